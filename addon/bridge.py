@@ -31,6 +31,14 @@ class RenderError(Exception):
     """The native library refused the scene or failed; the text names the datablock."""
 
 
+class MemoryShort(RenderError):
+    """The frame wanted more memory than its limit, or than the system gives; the text says what took it."""
+
+
+# What the library says then (native/render/frame_memory.cpp, render_job.cpp).
+_MEMORY_SHORT = ("the frame wants more memory", "the system gives no more memory")
+
+
 def load():
     """Returns the module `granita_core`.  Raises NativeModuleMissing."""
     unfit = host.problem(host.this_host())
@@ -134,4 +142,5 @@ def _translated(core):
     except core.GlError as error:
         raise DeviceError(str(error)) from error
     except core.Error as error:
-        raise RenderError(str(error)) from error
+        kind = MemoryShort if str(error).startswith(_MEMORY_SHORT) else RenderError
+        raise kind(str(error)) from error

@@ -4,7 +4,7 @@
     --granita-device cpu|gpu|auto   overrides scene.granita.device
     --granita-stats FILE            appends one JSON object a frame (frame_statistics.py)
     --granita-threads N             overrides Blender's thread count; 0 = all
-    --granita-memory MIB            a frame for which the process would hold more is given up
+    --granita-memory MIB            a frame for which the process would hold more is given up (frame_memory.py)
     --granita-log json|openjd       lines for machines on the standard output (event_log.py)
     --granita-part K/N              renders the K-th of N parts of the frame into a part file (parts/)
     --granita-cut N                 looks at the frame and cuts it into N parts of about the same cost

@@ -14,6 +14,7 @@ from . import bridge, passes
 from .event_log import EventLog
 from .export import export_frame
 from .export.base.report import Cancelled, Report, lines
+from .frame_memory import largest_geometry, largest_mesh, memory_limit
 from .parts.coarse_look import coarse, tile_costs
 from .parts.frame_cut import FrameCut
 from .parts.part_output import folder_of, output_path
@@ -23,6 +24,7 @@ from .status_line import StatusLine, layers_done
 
 # Seconds between two looks at the cancel flag; well below the .5 s that an artist notices.
 POLL_SECONDS = 0.05
+MUCH_MEMORY = 1 << 20  # bytes that the export says before it takes them
 
 
 class SettingsError(Exception):
@@ -41,6 +43,9 @@ class FinalRender:
         self.engine = engine
         self.depsgraph = depsgraph
         self.options = options
+        self.memory = memory_limit(options.memory)
+        self.memory_looked_at = -POLL_SECONDS  # by perf_counter
+        self.largest = ""  # thing of the scene, in words
         self.persistent_state = persistent_state
         self.scene = depsgraph.scene.name
         self.layer = depsgraph.view_layer.name
@@ -101,8 +106,9 @@ class FinalRender:
             options["device"] = self.options.device
         if self.options.threads is not None:
             options["threads"] = self.options.threads
-        if self.options.memory is not None:
-            options["memory"] = self.options.memory
+        if self.memory is not None:
+            options["memory"] = self.memory.mebibytes
+        self.largest = largest_geometry(snapshot["geometries"])
 
         if self.options.part is not None or self.options.cut is not None:
             self.cut = self._frame_cut(snapshot)
@@ -150,22 +156,36 @@ class FinalRender:
         self.engine.end_result(self.engine.begin_result(0, 0, 1, 1, layer=self.layer))
         self.status.rendered()
 
-    def _exporting(self):
-        """Called often by the export."""
+    def _exporting(self, wanted):
+        """Called often by the export, which is about to take `wanted` bytes."""
         if self.engine.is_cancelled():
             raise Cancelled
-        if self.options.memory is not None:
-            self._check_memory(self.options.memory)
+        if self.memory is not None:
+            self._check_memory(wanted)
         self.status.exporting()
 
-    def _check_memory(self, limit):
+    def _check_memory(self, wanted):
         """Of the export; the render looks itself."""
-        held = bridge.load().process_memory() >> 20
-        if held > limit:
+        now = perf_counter()
+        if wanted < MUCH_MEMORY and now - self.memory_looked_at < POLL_SECONDS / 5:
+            return  # a look takes a hundredth of a millisecond: too long for each of many small objects
+        self.memory_looked_at = now
+        limit, held = self.memory.mebibytes, bridge.load().process_memory()
+        if held + wanted > limit << 20:
+            self.largest = self.largest or largest_mesh(self.depsgraph)
+            taken = f"{held >> 20} MiB are taken by Blender and the scene"
+            if wanted >> 20:
+                taken += f", {wanted >> 20} MiB more are wanted"
             raise SettingsError(
-                f"the export wants more memory than {limit} MiB, its limit: "
-                f"{held} MiB are taken by Blender and the scene"
+                self._about_memory(
+                    f"the export wants more memory than {limit} MiB, its limit: {taken}"
+                )
             )
+
+    def _about_memory(self, text):
+        """With what helps who reads that memory does not suffice."""
+        origin = self.memory.origin if self.memory is not None else ""
+        return "; ".join(filter(None, (text, self.largest, origin)))
 
     def _render(self, snapshot, deliver=None):
         """Runs the native job to its end and returns it.  Empties the snapshot."""
@@ -181,6 +201,8 @@ class FinalRender:
                         raise Cancelled
                     self.status.rendering(job)
                 deliver(job.take_tiles(0.0))
+        except bridge.MemoryShort as error:
+            raise SettingsError(self._about_memory(str(error))) from error
         finally:
             if job is not None:
                 self._tell(job.warnings())

@@ -26,7 +26,9 @@ def render_preview(engine, depsgraph):
         Cancelled, ExportError, and what bridge.rendering raises.
     """
     layer = depsgraph.view_layer.name
-    snapshot = export_frame(engine, depsgraph, _Settings, Report(), engine.is_cancelled)
+    snapshot = export_frame(
+        engine, depsgraph, _Settings, Report(), lambda _wanted: engine.is_cancelled()
+    )
     combined = passes.PASSES[:1]
     origin = [int(pixel) for pixel in snapshot["options"]["crop"][:2]]
     with bridge.rendering(snapshot, "a preview") as job:

@@ -36,7 +36,7 @@ def export_frame(
     depsgraph,
     settings,
     report,
-    check_cancel=lambda: False,
+    check_cancel=lambda _wanted: False,
     persistent_state=None,
     viewpoint=None,
     moves=True,
@@ -50,7 +50,8 @@ def export_frame(
             frame again on every way out.
         settings: `scene.granita`, anything with some of its properties, or None for the defaults.
         report: Report, or a function of (datablock, message), for what the frame survives.
-        check_cancel: called often; raises, or returns true, to end the export.
+        check_cancel: called often, with the bytes that the export is about to take where these are many, else 0;
+            raises, or returns true, to end it.
         persistent_state: PersistentState of the engine where Blender keeps its evaluated scene from
             frame to frame: only what changed is read then.
         viewpoint: of scene/viewpoint.py, a 3D view's; None: the scene's camera and its resolution.

@@ -58,7 +58,7 @@ def _probing(scene):
 def _render(
     scene,
     motion_steps,
-    cancelled=lambda: False,
+    cancelled=lambda _wanted: False,
     before=_nothing,
     after=_nothing,
     persistent_state=None,
@@ -84,7 +84,7 @@ def _render(
 
 
 def through_engine(
-    scene, *, motion_steps=3, cancelled=lambda: False, before=_nothing, after=_nothing
+    scene, *, motion_steps=3, cancelled=lambda _wanted: False, before=_nothing, after=_nothing
 ):
     """(snapshot, Report, time at which the scene stood afterwards); raises what export raises."""
     with _probing(scene):

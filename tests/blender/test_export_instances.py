@@ -272,7 +272,7 @@ def test_cancel_within_the_walk(scene, cube):
     by_nodes(scene, cube, 10_000)
     calls = []
 
-    def cancelled():
+    def cancelled(_wanted):
         calls.append(1)
         return len(calls) > 3
 

@@ -19,7 +19,7 @@ def test_the_frame_is_restored_after_a_failure(moving):
     drive(scene_parts.add_square(moving), "location", "frame", 0)
     calls = []
 
-    def fail_late():
+    def fail_late(_wanted):
         # At the second knot the scene stands elsewhere.
         calls.append(moving.frame_current + moving.frame_subframe)
         if calls[-1] != 10.0 and len(set(calls)) > 2:
@@ -34,7 +34,7 @@ def test_the_frame_is_restored_after_a_failure(moving):
 def test_the_frame_is_restored_after_cancel(moving):
     drive(scene_parts.add_square(moving), "location", "frame", 0)
 
-    def away():
+    def away(_wanted):
         return moving.frame_current != 10
 
     with pytest.raises(Cancelled) as caught:

@@ -26,9 +26,12 @@ class Cancelled(Exception):
     """The user ended the render while the scene was being read."""
 
 
-def poll(check_cancel):
-    """Raises Cancelled, or what check_cancel raises, when the user has cancelled."""
-    if check_cancel():
+def poll(check_cancel, wanted=0):
+    """Raises Cancelled, or what check_cancel raises, when the user has cancelled.
+
+    `wanted`: bytes that are about to be taken, where these are many.
+    """
+    if check_cancel(wanted):
         raise Cancelled
 
 

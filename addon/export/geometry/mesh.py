@@ -98,6 +98,7 @@ def read_geometry(mesh, label, requested, report, check_cancel, subdivision=None
     Returns:
         (Geometry, Topology of the mesh as Blender has it), or None where there is no face to see.
     """
+    poll(check_cancel, _bytes_of(mesh))
     topology = read_topology(mesh)
     if len(topology.face_sizes) == 0:
         return None
@@ -132,6 +133,13 @@ def read_geometry(mesh, label, requested, report, check_cancel, subdivision=None
     poll(check_cancel)
     _drop_broken_faces(geometry, report)
     return (geometry, topology) if len(geometry.face_sizes) else None
+
+
+def _bytes_of(mesh):
+    """At least what is copied of a mesh: what one of millions of faces takes between two polls."""
+    of_corners = len(mesh.loops) * 4 * (1 + 2 * len(mesh.uv_layers))
+    colors = sum(len(layer.data) for layer in mesh.color_attributes)
+    return of_corners + 4 * len(mesh.polygons) + 12 * len(mesh.vertices) + 16 * colors
 
 
 def _edges(mesh):
