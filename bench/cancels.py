@@ -1,80 +1,107 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Renders that are stopped at random times: under a frame's name there is a whole file or none.
 
-    ./dev bench cancels [--runs 50] [--seed 1]
+    ./dev bench cancels [--runs 50] [--seed 1] [--ways Esc SIGINT ...]
 
-Float OpenEXR files of a small moving scene, an animation of 60 frames, stopped by SIGINT, SIGTERM or SIGKILL up to a second and a half after
-its first frame.  Prints each file that is not whole; ends with 1 where there is one.
+Float OpenEXR files of a small moving scene, an animation of 60 frames, stopped by each way of stop_ways.py in turn up to
+a second and a half after its first frame.  Looks at exit codes, at each file under a frame's name, at processes that are
+left, and where a file has the name of an unfinished one whether the next render removes it.  Prints a Markdown table and
+what is wrong, writes bench/results/cancels.json; ends with 1 where something is.
 """
 
 import argparse
 import random
-import signal
-import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from pathlib import Path
+
+import measure
+import stop_ways
 
 TESTS = Path(__file__).resolve().parent.parent / "tests" / "blender"
 sys.path.insert(0, str(TESTS))
 import exr  # noqa: E402
 
-FRAMES = 60
-SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
-BLENDER = ["blender", "-b", "--factory-startup", "--addons", "granita"]
+UNFINISHED = ".unfinished-"
 
 
-def run(*words):
-    streams = {
-        "stdin": subprocess.DEVNULL,
-        "stdout": subprocess.DEVNULL,
-        "stderr": subprocess.DEVNULL,
-    }
-    return subprocess.Popen([*BLENDER, *map(str, words)], **streams)
+def processes_of(folder):
+    """Command lines that name the folder, a moment after: a killed one is not gone at once."""
+    for _ in range(20):
+        lines = []
+        for path in Path("/proc").glob("[0-9]*/cmdline"):
+            try:
+                lines.append(path.read_bytes().replace(b"\0", b" ").decode(errors="replace"))
+            except OSError:
+                continue  # it has ended
+        found = [line for line in lines if f"{folder}/" in line]
+        if not found:
+            break
+        time.sleep(0.1)
+    return found
 
 
-def stopped(blend, out, stop, later):
-    """Paths of the files that a render leaves which is stopped `later` seconds after its first frame."""
-    process = run(blend, "-E", "GRANITA", "-o", out / "frame_####", "-a")
-    began = time.monotonic()
-    while not any(out.glob("frame_*")) and time.monotonic() - began < 60.0:
-        time.sleep(0.02)
-    time.sleep(later)
-    process.send_signal(stop)
-    process.wait(timeout=60)
-    return sorted(out.iterdir())
+def look(blend, out, row):
+    """Counts the files that a stopped render left; yields what is wrong with them."""
+    for path in sorted(out.iterdir()):
+        if path.name.startswith(UNFINISHED):
+            row["unfinished files"] += 1
+            continue
+        try:
+            exr.read(path)
+            row["whole files"] += 1
+        except Exception as error:
+            yield f"{path.name} is broken: {error}"
+    if any(out.glob(UNFINISHED + "*")):
+        number = stop_ways.FRAMES
+        code = stop_ways.render(blend, out, "-f", number).wait(stop_ways.PATIENCE)
+        if code or not (out / f"frame_{number:04}.exr").exists():
+            yield f"the next render ends with {code}"
+        for path in out.glob(UNFINISHED + "*"):
+            yield f"the next render leaves {path.name}"
+
+
+def run(way, blend, out, later, row):
+    """One stopped render; yields what is wrong."""
+    stopped, right = stop_ways.WAYS[way]
+    out.mkdir()
+    code = stopped(blend, out, later)
+    if code != right:
+        yield f"exit code {code} instead of {right}"
+    yield from (f"left: {line}" for line in processes_of(out))
+    yield from look(blend, out, row)
+    for path in out.iterdir():
+        path.unlink()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=50)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--ways", nargs="+", choices=stop_ways.WAYS, default=stop_ways.ways_here())
     options = parser.parse_args()
     chance = random.Random(options.seed)
-    whole, unfinished, broken = 0, 0, []
+    kinds = ("runs", "whole files", "unfinished files", "wrong")
+    rows = {way: Counter(dict.fromkeys(kinds, 0)) for way in options.ways}
     with tempfile.TemporaryDirectory() as folder:
         blend = Path(folder) / "scene.blend"
-        scene = ["--python", TESTS / "moving_square.py", "--", blend, 640, 64, FRAMES]
-        if run("--python-exit-code", 1, *scene).wait():
+        words = ["--python", TESTS / "moving_square.py", "--", blend, 320, 32, stop_ways.FRAMES]
+        if stop_ways.start([*stop_ways.BLENDER, "-b", "--python-exit-code", 1, *words]).wait():
             sys.exit("the scene cannot be made")
         for number in range(options.runs):
-            out = Path(folder) / str(number)
-            out.mkdir()
-            stop, later = chance.choice(SIGNALS), chance.uniform(0.0, 1.5)
-            for path in stopped(blend, out, stop, later):
-                try:
-                    if path.name.startswith(".unfinished-"):  # not a frame's name
-                        unfinished += 1
-                    else:
-                        exr.read(path)
-                        whole += 1
-                except Exception as error:
-                    broken.append(f"{stop.name}, {later:.3f} s later: {path.name}: {error}")
-                path.unlink()
-    print(f"{options.runs} runs, {whole} whole files, {unfinished} under names of unfinished ones")
-    print(f"{len(broken)} broken", *broken, sep="\n")
-    sys.exit(bool(broken))
+            way, later = options.ways[number % len(options.ways)], chance.uniform(0.0, 1.5)
+            row = rows[way]
+            row["runs"] += 1
+            for wrong in run(way, blend, Path(folder) / str(number), later, row):
+                row["wrong"] += 1
+                print(f"{way}, {later:.3f} s after the first frame: {wrong}", flush=True)
+    print(f"| way | {' | '.join(kinds)} |\n|{'---|' * (1 + len(kinds))}")
+    for way, row in rows.items():
+        print(f"| {way} | {' | '.join(str(row[kind]) for kind in kinds)} |")
+    measure.save("cancels", [{"way": way, **row} for way, row in rows.items()])
+    sys.exit(any(row["wrong"] for row in rows.values()))
 
 
 if __name__ == "__main__":
