@@ -43,24 +43,32 @@ def processes_of(folder):
     return found
 
 
+def is_whole(path):
+    try:
+        exr.read(path)
+    except Exception:
+        return False
+    return True
+
+
 def look(blend, out, row):
     """Counts the files that a stopped render left; yields what is wrong with them."""
     for path in sorted(out.iterdir()):
         if path.name.startswith(UNFINISHED):
             row["unfinished files"] += 1
             continue
-        try:
-            exr.read(path)
+        if is_whole(path):
             row["whole files"] += 1
-        except Exception as error:
-            yield f"{path.name} is broken: {error}"
+        else:
+            yield f"{path.name} is broken"
     if any(out.glob(UNFINISHED + "*")):
         number = stop_ways.FRAMES
         code = stop_ways.render(blend, out, "-f", number).wait(stop_ways.PATIENCE)
         if code or not (out / f"frame_{number:04}.exr").exists():
             yield f"the next render ends with {code}"
         for path in out.glob(UNFINISHED + "*"):
-            yield f"the next render leaves {path.name}"
+            if not is_whole(path):  # such a one may hold somebody's frame, and stays
+                yield f"the next render leaves {path.name}"
 
 
 def run(way, blend, out, later, row):

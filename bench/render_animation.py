@@ -3,7 +3,7 @@
 
     blender -b --factory-startup --addons granita --python bench/render_animation.py -- JOB.json
 
-JOB: {"file", "frames", "persistent"}.  The file gets a list of numbers, one a frame, for each of "resident" and "heap" (bytes;
+JOB: {"file", "frames", "persistent", "bounces"}; bounces: of scene.granita.  The file gets a list of numbers, one a frame, for each of "resident" and "heap" (bytes;
 "heap", exact, is empty where the allocator cannot be asked), "threads" and "files" (of the process, open ones) and "seconds".
 """
 
@@ -63,7 +63,7 @@ def moving_scene(folder, frames):
     scene = with_shutter(bpy.context.scene)
     scene.render.engine = "GRANITA"
     scene.render.resolution_x, scene.render.resolution_y = 96, 64
-    scene.granita.samples, scene.granita.bounces = 16, "NONE"
+    scene.granita.samples = 16
     square = scene_parts.add_square(scene, material=scene_parts.emission("Glow", (1.0, 0.5, 0.2)))
     drive(square, "rotation_euler", "frame", 2)
     drive(shape_key(square), "value", "frame / 300")
@@ -89,6 +89,7 @@ def moving_scene(folder, frames):
 def main():
     job = json.loads(Path(sys.argv[sys.argv.index("--") + 1]).read_text())
     scene = moving_scene(Path(job["file"]).parent, job["frames"])
+    scene.granita.bounces = job["bounces"]
     scene.render.use_persistent_data = job["persistent"]
     scene.frame_start, scene.frame_end = 1, job["frames"]
     scene.render.filepath = str(Path(job["file"]).with_name("frame_"))
