@@ -22,7 +22,7 @@ def memory_limit(asked=None, root="/"):
     """The MemoryLimit of a frame, or None where the system does not tell.
 
     Args:
-        asked: MiB, by the command line; None: a share of what the machine has, or of what the process's control
+        asked: MiB, by the command line; None: a share of what the machine has (swap, too), or of what the process's control
             group (cgroups(7), of either version) or one around it may hold where that is less.
         root: folder that has `proc` and `sys`.
     """
@@ -62,10 +62,10 @@ def _count(geometry):
 
 
 def _machine_bytes(root):
-    for line in _lines(root / "proc/meminfo"):
-        if line.startswith("MemTotal:"):
-            return int(line.split()[1]) << 10
-    return float("inf")
+    """Swapped out, a frame is slow and not lost."""
+    words = [line.split() for line in _lines(root / "proc/meminfo")]
+    sizes = [int(size) << 10 for name, size, *_ in words if name in ("MemTotal:", "SwapTotal:")]
+    return sum(sizes) or float("inf")
 
 
 def _group_bytes(root):

@@ -15,10 +15,12 @@ OTHER = "35 29 0:31 / /sys/fs/cgroup/cpu rw - cgroup cgroup rw,cpu"
 
 @pytest.fixture
 def system(tmp_path):
-    """system(groups, mounts, {path: text}) -> root of a machine of 8 GiB."""
+    """system(groups, mounts, {path: text}) -> root of a machine of 8 GiB, a quarter of it swap."""
 
     def make(groups, mounts, files=()):
-        texts = {"proc/meminfo": f"MemTotal: {8 << 20} kB\nMemFree: 1 kB\n"}
+        texts = {
+            "proc/meminfo": f"MemTotal: {6 << 20} kB\nMemFree: 1 kB\nSwapTotal: {2 << 20} kB\n"
+        }
         texts |= {"proc/self/cgroup": groups, "proc/self/mountinfo": "\n".join(mounts)}
         for path, text in (texts | dict(files)).items():
             (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
