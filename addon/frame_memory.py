@@ -5,6 +5,7 @@ Nothing here needs Blender.
 """
 
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 
 # Of what the kernel gives before it kills: the rest is for what a process takes between two looks,
@@ -22,17 +23,19 @@ def memory_limit(asked=None, root="/"):
     """The MemoryLimit of a frame, or None where the system does not tell.
 
     Args:
-        asked: MiB, by the command line; None: a share of what the machine has (swap, too), or of what the process's control
-            group (cgroups(7), of either version) or one around it may hold where that is less.
+        asked: MiB, by the command line; None: a share of what the machine has, or of what the process's control
+            group (cgroups(7), of either version) or one around it may hold where that is less.  Swap counts: swapped
+            out, a frame is slow and not lost.
         root: folder that has `proc` and `sys`.
     """
     if asked is not None:
         return MemoryLimit(asked, "")
     root = Path(root)
-    found = [("this machine has", _machine_bytes(root))]
-    found += [("the control group may hold", size) for size in _group_bytes(root)]
+    memory, swap = _machine_bytes(root)
+    found = [("this machine has", memory + swap)]
+    found += [("the control group may hold", size) for size in _group_bytes(root, swap)]
     owner, size = min(found, key=lambda pair: pair[1])
-    if size == float("inf"):
+    if size == inf:
         return None
     origin = f"the limit is {SHARE:.0%} of what {owner}, --granita-memory sets another"
     return MemoryLimit(max(1, int(size * SHARE) >> 20), origin)
@@ -62,17 +65,23 @@ def _count(geometry):
 
 
 def _machine_bytes(root):
-    """Swapped out, a frame is slow and not lost."""
+    """(memory, swap)"""
     words = [line.split() for line in _lines(root / "proc/meminfo")]
-    sizes = [int(size) << 10 for name, size, *_ in words if name in ("MemTotal:", "SwapTotal:")]
-    return sum(sizes) or float("inf")
+    sizes = {line[0]: int(line[1]) << 10 for line in words if len(line) == 3}
+    return sizes.get("MemTotal:", inf), sizes.get("SwapTotal:", 0)
 
 
-def _group_bytes(root):
-    """Limits, innermost first; a group without one has none, or more than any machine has."""
+def _group_bytes(root, swap):
+    """Limits, innermost first, with what a group may have of the machine's `swap`."""
     for folder in _group_folders(root):
-        for name in ("memory.max", "memory.limit_in_bytes"):
-            yield from (int(line) for line in _lines(folder / name) if line.isdigit())
+        yield _size(folder / "memory.max") + min(swap, _size(folder / "memory.swap.max"))
+        both = _size(folder / "memory.memsw.limit_in_bytes")
+        yield min(both, _size(folder / "memory.limit_in_bytes") + swap)
+
+
+def _size(path):
+    """Infinite where there is no such file, or "max" in it; more than any machine has where version 1 has none."""
+    return next((int(line) for line in _lines(path) if line.isdigit()), inf)
 
 
 def _group_folders(root):
@@ -83,14 +92,14 @@ def _group_folders(root):
         groups.update((controller, Path(path)) for controller in controllers.split(","))
     for line in _lines(root / "proc/self/mountinfo"):
         mount, _, system = line.partition(" - ")
-        top, place = mount.split()[3:5]
-        kind, _, options = system.split()[:3]
+        kind, *_, options = system.split(" ")
         if kind == "cgroup2":
             group = groups.get("")
         elif kind == "cgroup" and "memory" in options.split(","):
             group = groups.get("memory")
         else:
             continue
+        top, place = mount.split(" ")[3:5]
         # A container may see its own group alone, under a path that it does not know.
         known = group is not None and group.is_relative_to(top)
         inner = group.relative_to(top) if known else Path()
@@ -99,7 +108,8 @@ def _group_folders(root):
 
 
 def _lines(path):
+    """Names of mounts may hold any byte but the end of a line."""
     try:
-        return path.read_text().splitlines()
+        return path.read_bytes().decode("utf-8", "surrogateescape").split("\n")[:-1]
     except OSError:
         return []

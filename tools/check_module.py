@@ -117,7 +117,7 @@ def _newer_instructions(module: Path, symbols: Path) -> list[str]:
             name = names[begins[at]] if at >= 0 else "a function without a name"
             if not DISPATCHED.search(name):
                 found[name].add(re.sub(r"\{\w+\} ", "", instruction).split()[0])
-    if objdump.returncode:
+    if objdump.returncode or grep.returncode not in (0, 1):
         return ["cannot be disassembled"]
     some = "; ".join(f"{name}: {', '.join(sorted(found[name]))}" for name in sorted(found)[:5])
     return (

@@ -15,8 +15,8 @@ namespace granita {
 /// Asks for large pages under memory that was just taken.  A wish: it cannot fail.
 void want_huge_pages(void* memory, std::size_t bytes);
 
-/// Bytes that the system cannot take back from this process by itself: files that are mapped do not
-/// count.  0 where it does not tell.
+/// Bytes that the system cannot take back from this process by itself, swapped out or not: files
+/// that are mapped do not count.  0 where it does not tell.
 std::uint64_t process_memory();
 
 /// Has the C library give back what it keeps of what was freed.

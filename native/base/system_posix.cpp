@@ -114,10 +114,14 @@ void want_huge_pages(void* memory, std::size_t bytes) {
 }
 
 std::uint64_t process_memory() {
-    std::uint64_t pages = 0, resident = 0, of_files = 0;  // proc(5), statm
-    std::ifstream statm("/proc/self/statm");
-    if (!(statm >> pages >> resident >> of_files) || resident < of_files) return 0;
-    return (resident - of_files) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+    std::uint64_t kibibytes = 0;  // proc(5), status
+    std::ifstream status("/proc/self/status");
+    for (std::string name; status >> name; status.ignore(256, '\n')) {
+        std::uint64_t size = 0;
+        if ((name == "RssAnon:" || name == "RssShmem:" || name == "VmSwap:") && status >> size)
+            kibibytes += size;
+    }
+    return kibibytes << 10;
 }
 
 void return_freed_memory() {

@@ -15,13 +15,12 @@ OTHER = "35 29 0:31 / /sys/fs/cgroup/cpu rw - cgroup cgroup rw,cpu"
 
 @pytest.fixture
 def system(tmp_path):
-    """system(groups, mounts, {path: text}) -> root of a machine of 8 GiB, a quarter of it swap."""
+    """system(groups, mounts, {path: text}) -> root of a machine of 8 GiB without swap."""
 
     def make(groups, mounts, files=()):
-        texts = {
-            "proc/meminfo": f"MemTotal: {6 << 20} kB\nMemFree: 1 kB\nSwapTotal: {2 << 20} kB\n"
-        }
-        texts |= {"proc/self/cgroup": groups, "proc/self/mountinfo": "\n".join(mounts)}
+        texts = {"proc/meminfo": f"MemTotal: {8 << 20} kB\nMemFree: 1 kB\nHugePages_Total: 0\n"}
+        texts |= {"proc/self/cgroup": groups}
+        texts |= {"proc/self/mountinfo": "".join(f"{mount}\n" for mount in mounts)}
         for path, text in (texts | dict(files)).items():
             (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / path).write_text(text)
@@ -72,6 +71,39 @@ def test_a_control_groups_limit_holds_where_it_is_less(system, groups, mounts, f
     found = memory_limit(root=system(groups, mounts, files))
     assert found.mebibytes == 1843  # .9 of 2048
     assert "the control group may hold" in found.origin
+
+
+@pytest.mark.parametrize(
+    "mount, files, mebibytes",
+    [
+        (V2, {"memory.max": "max"}, 9 * 1024),
+        (V2, {"memory.max": 2 * GIB, "memory.swap.max": "max"}, 4 * 1024),
+        (V2, {"memory.max": 2 * GIB, "memory.swap.max": GIB}, 3 * 1024),
+        (V2, {"memory.max": 2 * GIB, "memory.swap.max": 0}, 2 * 1024),
+        (V1, {"memory/memory.limit_in_bytes": 2 * GIB}, 4 * 1024),
+        (
+            V1,
+            {
+                "memory/memory.limit_in_bytes": 2 * GIB,
+                "memory/memory.memsw.limit_in_bytes": 3 * GIB,
+            },
+            3 * 1024,
+        ),
+    ],
+)
+def test_swap_counts_as_far_as_a_group_may_have_it(system, mount, files, mebibytes):
+    files = {f"sys/fs/cgroup/{path}": f"{text}\n" for path, text in files.items()}
+    files["proc/meminfo"] = f"MemTotal: {7 << 20} kB\nSwapTotal: {2 << 20} kB\n"
+    found = memory_limit(root=system("4:memory:/\n0::/\n", [mount], files))
+    assert found.mebibytes == int(0.9 * mebibytes)
+
+
+def test_a_mount_of_any_name_is_passed_by(system):
+    odd = ["31 30 0:27 / /tmp rw - tmpfs  rw", "32 30 0:28 / /media/a\u2028b rw - ext4 /dev/a rw"]
+    root = system("0::/\n", [*odd, V2], {"sys/fs/cgroup/memory.max": f"{2 * GIB}\n"})
+    info = root / "proc/self/mountinfo"
+    info.write_bytes(b"33 30 0:29 / /media/caf\xe9 rw - ext4 /dev/b rw\n" + info.read_bytes())
+    assert memory_limit(root=root).mebibytes == 1843
 
 
 def test_a_control_groups_limit_above_the_machines_does_not_count(system):

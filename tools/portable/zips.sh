@@ -25,7 +25,7 @@ configure_portable() {  # OPTION...
 # Half an hour of building is spared where nothing asks for it: neither what the zips are made with changed, nor are the libraries there.
 portable_is_due() {
     "$PYTHON" "$ROOT/tools/portable/libraries.py" --are-built "$CACHE" ||
-        [[ -n $(changed_files tools/portable cmake/GranitaPortable.cmake) ]]
+        [[ -n $(changed_files -- tools cmake) ]]
 }
 
 build_portable() {  # -> $BUILD/portable/delivered
@@ -36,6 +36,7 @@ build_portable() {  # -> $BUILD/portable/delivered
 }
 
 package_portable() {
+    rm -f "$ROOT/dist/granita-$VERSION-linux-x64"*.zip  # or what was made before would be tested
     build_portable
     local delivered=$BUILD/portable/delivered name=$ROOT/dist/granita-$VERSION-linux-x64
     "$PYTHON" "$ROOT/tools/package.py" zips "$ROOT" "$ROOT/dist" linux-x64 \

@@ -2,10 +2,12 @@
 #include "base/system.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
 #include <initializer_list>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -24,8 +26,8 @@ class TemporaryFileTest : public testing::Test {
     void SetUp() override { std::filesystem::create_directory(folder); }
     void TearDown() override { std::filesystem::remove_all(folder); }
 
-    std::filesystem::path folder =
-        std::filesystem::temp_directory_path() / "granita_temporary_file_test";
+    std::filesystem::path folder = std::filesystem::temp_directory_path() /
+                                   ("granita_temporary_file_test_" + std::to_string(getpid()));
     TemporaryFile file;
 };
 
