@@ -7,9 +7,7 @@ a frame is there already, Blender asks before that, and movies and the composito
 frames that other files are named after: the previews of OpenEXR, the drawings of Freestyle's exporter.
 """
 
-import contextlib
 import os
-import shutil
 from pathlib import Path
 
 import bpy
@@ -46,39 +44,6 @@ def set_aside(scene):
     _Renamed.prefixed = render.filepath  # Blender cuts off what is too long
     _Renamed.file, _Renamed.final = Path(render.frame_path()), final
     return True
-
-
-def take_name(file, final):
-    """Where a file of others may be filled but not replaced, `final` is filled.  Raises OSError; no half file is then
-    under that name."""
-    try:
-        os.replace(file, final)
-    except OSError:
-        _fill(final, file)
-        file.unlink()
-
-
-def _fill(final, file):
-    with open(file, "rb") as source, open(final, "wb") as target:
-        try:
-            shutil.copyfileobj(source, target)
-            target.flush()
-            os.fsync(target.fileno())
-        except OSError:
-            final.unlink()
-            raise
-
-
-def why_not_opened(file):
-    """The operating system's reason, asked by trying again what Blender tried; empty where it has none any more."""
-    try:
-        with contextlib.suppress(FileExistsError):
-            file.parent.mkdir(parents=True)
-        file.touch(exist_ok=False)
-        file.unlink()
-    except OSError as error:
-        return error.strerror
-    return ""
 
 
 def put_back(scene):

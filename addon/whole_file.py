@@ -4,8 +4,12 @@
 The formats: https://openexr.com/en/latest/OpenEXRFileLayout.html, https://www.w3.org/TR/png/
 """
 
+import errno
 import os
 import struct
+
+# What file systems answer that cannot flush at all, as some of FUSE: nothing is lost by it.
+_CANNOT_FLUSH = {errno.EINVAL, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP}
 
 _OPENEXR = b"v/1\x01"
 _PNG = b"\x89PNG\r\n\x1a\n"
@@ -32,15 +36,27 @@ def is_whole(path):
     return size > 8  # no picture is smaller
 
 
+def flush(file):
+    """Onto the disk, where its file system can.  Raises OSError where the bytes did not get there.
+
+    File systems of networks tell of a full disk, a spent quota or a broken line when they are asked for that alone.
+    """
+    file.flush()
+    try:
+        os.fsync(file.fileno())
+    except OSError as error:
+        if error.errno not in _CANNOT_FLUSH:
+            raise
+
+
 def fault(path):
     """What is wrong with a file that was just written, in words; empty where it is whole and on the disk.
 
-    File systems of networks tell of a full disk, a spent quota or a broken line when they are asked for that alone; an
-    end that was seen may be in this machine's memory only.  Raises OSError where the file cannot be looked at.
+    An end that was seen may be in this machine's memory only.  Raises OSError where the file cannot be looked at.
     """
-    with open(path, "r+b", buffering=0) as file:
+    with open(path, "rb") as file:
         try:
-            os.fsync(file.fileno())
+            flush(file)
         except OSError as error:
             return error.strerror
     return "" if is_whole(path) else "the disk may be full"

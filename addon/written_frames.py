@@ -15,7 +15,7 @@ from pathlib import Path
 
 import bpy
 
-from . import command_line, leftover_files, unfinished_file
+from . import command_line, final_file, leftover_files, unfinished_file
 from .event_log import EventLog
 from .export.base.report import escaped
 from .handlers import registration
@@ -119,7 +119,7 @@ def _name_it(file, final):
     """Gives a whole file the frame's name; returns what is wrong."""
     try:
         if not (cause := fault(file)):
-            unfinished_file.take_name(file, final)
+            final_file.take_name(file, final)
             print(f"Saved: '{escaped(str(final))}'", flush=True)
             return ""
         file.unlink()
@@ -130,10 +130,9 @@ def _name_it(file, final):
 
 
 def _unopened(file, final):
-    """Of a frame that was to be saved and of which Blender left nothing."""
-    if cause := unfinished_file.why_not_opened(file):
-        return f"'{final}' could not be written: {cause}"
-    return f"'{final}' was not saved: lines before this one may say why"
+    """Of a frame of which Blender left nothing; empty where nothing hinders it: then somebody stopped Blender before."""
+    cause = final_file.why_not_opened(file)
+    return f"'{final}' could not be written: {cause}" if cause else ""
 
 
 def _take_away(scene):

@@ -20,6 +20,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ..whole_file import flush
+
 MAGIC = b"granita part 1\n"
 
 
@@ -54,8 +56,7 @@ def write(path, header, passes):
         path.parent.mkdir(parents=True, exist_ok=True)
         with open(unfinished, "wb") as file:
             file.writelines([MAGIC, digest.digest(), *chunks])
-            file.flush()
-            os.fsync(file.fileno())  # network file systems tell of a full disk here
+            flush(file)
         os.replace(unfinished, path)
     except OSError as error:
         with contextlib.suppress(OSError):

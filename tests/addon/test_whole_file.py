@@ -36,6 +36,30 @@ def test_a_disk_that_does_not_take_it_says_why(file, monkeypatch, code):
     assert whole_file.fault(file) == os.strerror(code)
 
 
+@pytest.mark.parametrize("code", [errno.EINVAL, errno.ENOSYS, errno.EOPNOTSUPP])
+def test_a_disk_that_cannot_flush_lost_nothing(file, monkeypatch, code):
+    def refuses(_descriptor):
+        raise OSError(code, os.strerror(code))
+
+    monkeypatch.setattr(os, "fsync", refuses)
+    assert whole_file.fault(file) == ""
+    file.write_bytes(WHOLE[:50])
+    assert whole_file.fault(file) == "the disk may be full"
+
+
+def test_a_file_that_may_only_be_read_is_opened_for_that(file, monkeypatch):
+    """Whoever runs this may be one that may write everything."""
+    modes = []
+
+    def opens(path, mode, *others, **more):
+        modes.append(mode)
+        return open(path, mode, *others, **more)
+
+    monkeypatch.setattr(whole_file, "open", opens, raising=False)
+    assert whole_file.fault(file) == ""
+    assert set(modes) == {"rb"}
+
+
 def test_a_file_that_is_not_there_raises(tmp_path):
     with pytest.raises(FileNotFoundError):
         whole_file.fault(tmp_path / "none.png")

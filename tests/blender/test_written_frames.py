@@ -12,7 +12,7 @@ import pytest
 import render_host
 import scene_parts
 
-from granita import whole_file
+from granita import whole_file, written_frames
 
 # (format, codec of OpenEXR, other settings): those whose end can be seen.
 FORMATS = [
@@ -69,6 +69,13 @@ def set_format(image, kind, codec, others):
     for name, value in others.items():
         if hasattr(image, name):
             setattr(image, name, value)
+
+
+def happens(scene, *events):
+    """As Blender says it."""
+    for event in events:
+        for handler in list(getattr(bpy.app.handlers, event)):
+            handler(scene, None)
 
 
 @pytest.mark.parametrize("kind, codec, others", FORMATS)
@@ -213,24 +220,30 @@ def test_the_next_render_removes_what_a_killed_one_left(blend, tmp_path):
     assert f"removed '{left}'" in outcome.output
 
 
+def test_a_frame_that_is_stopped_before_it_is_saved_is_no_error(scene, tmp_path, capfd):
+    """And leaves no folder."""
+    scene.render.filepath = str(tmp_path / "folder" / "frame_####")
+    happens(scene, "render_init", "render_pre")
+    written_frames.is_rendered()
+    assert ".unfinished-" in scene.render.filepath
+    happens(scene, "render_cancel")
+    assert scene.render.filepath == str(tmp_path / "folder" / "frame_####")
+    assert "Granita" not in "".join(capfd.readouterr())
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_cancelled_part_leaves_the_frames_own_file_to_whoever_writes_it(
     scene, tmp_path, monkeypatch
 ):
     words = ["blender", "--", f"--granita-parts={tmp_path / 'parts'}", "--granita-part=1/2"]
     monkeypatch.setattr("sys.argv", words)
     scene.render.filepath = str(tmp_path / "frame_####")
-
-    def happens(event):
-        for handler in list(getattr(bpy.app.handlers, event)):
-            handler(scene, None)
-
-    happens("render_init")
-    happens("render_pre")
+    happens(scene, "render_init", "render_pre")
     of_part, of_frame = Path(scene.render.frame_path()), tmp_path / "frame_0001.png"
     assert of_part == tmp_path / "parts" / "part_1-of-2_0001.png"
     of_part.parent.mkdir()
     for path in (of_part, of_frame):
         path.write_bytes(b"\x89PNG\r\n\x1a\n begun")
-    happens("render_cancel")
+    happens(scene, "render_cancel")
     assert scene.render.filepath == str(tmp_path / "frame_####")
     assert (of_part.exists(), of_frame.exists()) == (False, True)
