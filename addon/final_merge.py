@@ -6,8 +6,6 @@ Nothing is exported and nothing rendered; what follows in Blender is what follow
 
 from types import SimpleNamespace
 
-import bpy
-
 from . import passes
 from .event_log import EventLog
 from .export.base.report import Cancelled
@@ -28,7 +26,7 @@ class FinalMerge:
         self.scene = depsgraph.scene
         self.layer = depsgraph.view_layer.name
         log = EventLog(options.log, self.scene.frame_current, self.layer)
-        self.status = StatusLine(engine, log, *layers_done(depsgraph, bpy.app.background))
+        self.status = StatusLine(engine, log, *layers_done(engine, depsgraph))
         self.passes = passes.wanted(depsgraph.view_layer)
         self.exposure = passes.exposure_owner(depsgraph.scene_eval).film_exposure
 

@@ -53,7 +53,7 @@ class FinalRender:
         self.exposure = passes.exposure_owner(depsgraph.scene_eval).film_exposure
         self.frame = depsgraph.scene.frame_current
         self.log = EventLog(options.log, self.frame, self.layer)
-        self.status = StatusLine(engine, self.log, *layers_done(depsgraph, bpy.app.background))
+        self.status = StatusLine(engine, self.log, *layers_done(engine, depsgraph))
         self.report = Report()
         self.seconds = {}
         self.origin = None  # the result's lower-left pixel in the frame

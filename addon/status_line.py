@@ -15,12 +15,14 @@ from .event_log import EventLog
 SECONDS_BETWEEN_LINES = 1.0
 
 
-def layers_done(depsgraph, in_background):
-    """(number, of how many) of the view layers that the frame has behind it, in the order rendered."""
-    scene, layer = depsgraph.scene, depsgraph.view_layer.name
-    if scene.render.use_single_layer and not in_background:
-        return 0, 1
-    names = [each.name for each in scene.view_layers if each.use]
+def layers_done(engine, depsgraph):
+    """(number, of how many) of the view layers that the frame has behind it, in the order rendered.
+
+    The result has those that are rendered.  The scene does not tell: in background its `use_single_layer` counts for
+    nothing, in a window `render(layer=...)` leaves it unset.
+    """
+    layer = depsgraph.view_layer.name
+    names = [each.name for each in engine.get_result().layers]
     return (names.index(layer), len(names)) if layer in names else (0, 1)
 
 

@@ -59,7 +59,7 @@ def _by_farm(blend, out, later):
     program = blend.with_name("blender")
     program.write_text(f'#!/bin/sh\nexec {" ".join(BLENDER)} "$@"\n')
     program.chmod(0o755)
-    words = [OPENJD, "run", ROOT / "farm/openjd/granita_frames.yaml"]
+    words = [OPENJD, "run", ROOT / "farm/openjd/granita_frames/template.yaml"]
     values = {"SceneFile": blend, "Blender": program, "OutputFolder": out, "Frames": f"1-{FRAMES}"}
     for name, value in values.items():
         words += ["-p", f"{name}={value}"]

@@ -83,26 +83,12 @@ def test_a_layer_that_begins_anew_takes_nothing_back(clock):
     assert engine.progress == sorted(engine.progress)
 
 
-def scene_of(layers, single=False):
-    views = [SimpleNamespace(name=name, use=use) for name, use in layers.items()]
-    return SimpleNamespace(view_layers=views, render=SimpleNamespace(use_single_layer=single))
-
-
-def at(scene, name):
-    return SimpleNamespace(scene=scene, view_layer=SimpleNamespace(name=name))
-
-
-def test_layers_count_in_the_order_rendered():
-    scene = scene_of({"A": True, "off": False, "B": True, "C": True})
-    done = [status_line.layers_done(at(scene, name), True) for name in "ABC"]
-    assert done == [(0, 3), (1, 3), (2, 3)]
-
-
-def test_a_window_may_render_one_layer_alone():
-    scene = scene_of({"A": True, "B": True}, single=True)
-    assert status_line.layers_done(at(scene, "B"), in_background=False) == (0, 1)
-    # Farms get all of them, whatever the file says.
-    assert status_line.layers_done(at(scene, "B"), in_background=True) == (1, 2)
+@pytest.mark.parametrize("rendered, done", [("ABC", [(0, 3), (1, 3), (2, 3)]), ("B", [(0, 1)])])
+def test_layers_count_in_the_order_rendered(rendered, done):
+    layers = [SimpleNamespace(name=name) for name in rendered]
+    engine = SimpleNamespace(get_result=lambda: SimpleNamespace(layers=layers))
+    at = [SimpleNamespace(view_layer=layer) for layer in layers]
+    assert [status_line.layers_done(engine, depsgraph) for depsgraph in at] == done
 
 
 def test_a_frame_of_two_layers_goes_once_from_nothing_to_all(clock, capsys):

@@ -52,6 +52,11 @@ def earlier(path):
     return path
 
 
+def succeeds(*words):
+    """Whether this machine has such a program, and it does what it is asked for."""
+    return shutil.which(words[0]) and subprocess.run(words, check=False).returncode == 0
+
+
 def assert_is_told(outcome, path, reason):
     assert outcome.code == 1, outcome.output
     text = f"'{path}' could not be written: {os.strerror(reason)}"
@@ -60,12 +65,17 @@ def assert_is_told(outcome, path, reason):
     assert [(event["frame"], event["text"]) for event in errors] == [(1, text)]
 
 
-@pytest.mark.parametrize("alone", [ONE_BY_F, False])
-@pytest.mark.parametrize("kind", ["PNG", "OPEN_EXR", "JPEG"])
-@pytest.mark.parametrize("below", ["", "folder/"])
-def test_a_folder_that_is_a_file_ends_with_exit_code_1(blend, tmp_path, alone, kind, below):
+@pytest.mark.parametrize(
+    "kind, ending, below, alone",
+    [
+        ("PNG", "png", "", False),
+        ("OPEN_EXR", "exr", "folder/", False),
+        pytest.param("OPEN_EXR", "exr", "", *ONE_BY_F.values, marks=ONE_BY_F.marks),
+        pytest.param("JPEG", "jpg", "folder/", *ONE_BY_F.values, marks=ONE_BY_F.marks),
+    ],
+)
+def test_a_folder_that_is_a_file_ends_with_exit_code_1(blend, tmp_path, kind, ending, below, alone):
     (tmp_path / "file").write_text("not a folder")
-    ending = {"PNG": "png", "OPEN_EXR": "exr", "JPEG": "jpg"}[kind]
     prepare = FORMAT.format(kind) + TO.format(f"{tmp_path}/file/{below}frame_####")
     out = tmp_path / "out"
     outcome = render_host.run(blend, out, prepare, last=2, options=MACHINES, alone=alone)
@@ -87,7 +97,7 @@ def test_a_read_only_folder_ends_with_exit_code_1(blend, tmp_path, alone, below)
     out = tmp_path / "out"
     earlier(out / "frame_0001.exr")
     prefix = ("unshare", "--mount", "--map-root-user", "sh", "-c", READ_ONLY, str(out))
-    if subprocess.run([*prefix, "true"], check=False).returncode != 0:
+    if not succeeds(*prefix, "true"):
         pytest.skip("folders cannot be made read-only here")
     prepare = TO.format(f"{out}/{below}frame_####")
     outcome = render_host.run(blend, out, prepare, options=MACHINES, alone=alone, prefix=prefix)
@@ -95,14 +105,22 @@ def test_a_read_only_folder_ends_with_exit_code_1(blend, tmp_path, alone, below)
     assert [path.read_bytes() for path in outcome.files] == [b"earlier"]
 
 
-def test_a_file_that_cannot_be_replaced_ends_with_exit_code_1(blend, tmp_path):
+@pytest.fixture
+def immutable(tmp_path):
+    """An earlier frame, until the test's end."""
     final = earlier(tmp_path / "out" / "frame_0001.exr")
-    if subprocess.run(["chattr", "+i", str(final)], check=False).returncode != 0:
-        pytest.skip("files cannot be made immutable here")
+    is_made = succeeds("chattr", "+i", str(final))
     try:
-        outcome = render_host.run(blend, final.parent, last=2, options=MACHINES)
+        if not is_made:
+            pytest.skip("files cannot be made immutable here")
+        yield final
     finally:
-        subprocess.run(["chattr", "-i", str(final)], check=True)
+        assert not is_made or succeeds("chattr", "-i", str(final))
+
+
+def test_a_file_that_cannot_be_replaced_ends_with_exit_code_1(blend, immutable):
+    final = immutable
+    outcome = render_host.run(blend, final.parent, last=2, options=MACHINES)
     assert outcome.code == 1, outcome.output
     left, stays = outcome.files
     error = f"'{final}' could not be written: {os.strerror(errno.EPERM)}; the frame is in '{left}'"
@@ -152,6 +170,31 @@ def test_progress_for_machines_grows_to_the_end(blend, tmp_path, layers):
     assert set(fractions) >= {layer / layers for layer in range(1, layers + 1)}
     done = [event["view_layer"] for event in told(outcome) if event["event"] == "layer"]
     assert done == ["ViewLayer", "Second"][:layers]
+
+
+# One of two layers, by the operator's own word: the scene says nothing of it.
+ONE_LAYER = """
+import bpy
+
+bpy.context.scene.view_layers.new("Second")
+
+def render():
+    bpy.ops.render.render(layer="Second")
+    bpy.ops.wm.quit_blender()
+
+bpy.app.timers.register(render, first_interval=0.5)
+"""
+
+
+@window_host.needed
+def test_progress_of_one_layer_alone_begins_at_0(blend, tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(ONE_LAYER)
+    _, output = window_host.run(script, *MACHINES, blend=blend)
+    outcome = render_host.Outcome(0, output, [])
+    fractions = [event["fraction"] for event in told(outcome) if event["event"] == "progress"]
+    assert fractions[0] == 0.0 and fractions[-1] == 1.0
+    assert [e["view_layer"] for e in told(outcome) if e["event"] == "layer"] == ["Second"]
 
 
 @pytest.fixture(scope="session")
