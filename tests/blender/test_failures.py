@@ -311,7 +311,7 @@ def test_status_lines_end_in_sample_counts(blend, tmp_path):
     assert lines and all(0 <= done <= total for done, total in counts)
     assert counts == sorted(counts)
     percentages = [int(p) for line in lines for p in re.findall(r" \| Rendered (\d+)% \| ", line)]
-    assert percentages and percentages == sorted(percentages)
+    assert percentages == sorted(percentages)  # none of a frame of less than a second
 
 
 def bad_geometry(scene, material):

@@ -113,6 +113,8 @@ def tree_is_of_area(name):
     "spaces", ["WORLD OBJECT", "CAMERA OBJECT", "OBJECT WORLD", "WORLD CAMERA"]
 )
 def test_transforms(scene, render, name, kind, spaces):
+    if (4, 0) <= bpy.app.version < (4, 5) and "OBJECT" in spaces and kind != "NORMAL":
+        pytest.skip("this Cycles has a space of lamps for normals alone")
     set_stage(scene, lambert())
     tree = lamp_tree(scene, name)
     geometry, turn = (tree.nodes.new(f"ShaderNode{n}") for n in ("NewGeometry", "VectorTransform"))

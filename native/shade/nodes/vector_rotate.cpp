@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "scene/knot_time.h"
-#include "shade/nodes/lamp_coordinates.h"
 #include "shade/nodes/nodes.h"
 #include "shade/programs/shading_camera.h"
 
@@ -38,12 +37,12 @@ struct Spaces {
     std::string from, to;
     Mat4d camera_from_world;
     double time;
-    bool lamps_are_objects;
+    bool lamps_have_one;  ///< in Cycles since Blender 4, until 4.5 for normals alone
 
-    /// Of a point; the world, and lamps that are no objects, have no space of their own.
+    /// Of a point; the world has no space of its own.
     Mat4d world_from_object(const ShadingInput& in, std::size_t i) const {
         if (in.instance) return matrix_at(in.instance->world_from_object, time);
-        if (!lamps_are_objects || in.of_lamp.empty()) return Mat4d(1.0);
+        if (!lamps_have_one || in.of_lamp.empty()) return Mat4d(1.0);
         const LightFrame& frame = *in.of_lamp[i].frame;
         Mat4d m(frame.axes);
         m[3] = glm::dvec4(Vec3d(frame.position) + Vec3d(glm::inverse(camera_from_world)[3]), 1.0);
@@ -97,7 +96,7 @@ void build_vector_transform(NodeBuilder& b) {
     const VectorSource vector = b.vector("Vector");
     const Spaces spaces{b.text("convert_from", "WORLD"), b.text("convert_to", "OBJECT"),
                         glm::inverse(ShadingCamera(b.scene()).world_from_camera),
-                        b.scene().options.frame_time, is_object(b)};
+                        b.scene().options.frame_time, b.since(4, 0)};
     const std::string type = b.text("vector_type", "VECTOR");
     if (spaces.from == spaces.to) {
         b.output_vector("Vector", vector);
