@@ -17,6 +17,9 @@ from pathlib import Path
 
 import bpy
 
+sys.path.insert(0, str(Path(__file__).parent))
+from window_steps import take_steps  # noqa: E402
+
 ROOT = Path(__file__).resolve().parents[2]
 FORM = ROOT / "docs/manual/images/flamenco.png"
 SIZE = "640x480"
@@ -102,16 +105,7 @@ def main():
     if bpy.app.background:
         make(sys.argv[-1])
         return
-    todo = show_form()
-
-    def step():
-        try:
-            return next(todo, None)
-        except BaseException:
-            bpy.ops.wm.quit_blender()
-            raise
-
-    bpy.app.timers.register(step, first_interval=1.0)
+    take_steps(show_form())
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).parent))
 import pictures  # noqa: E402
+from window_steps import take_steps  # noqa: E402
 
 SIZE = "920x560"
 
@@ -96,16 +97,7 @@ def main():
     if bpy.app.background:
         make()
         return
-    todo = shots(sys.argv[-1])
-
-    def step():
-        try:
-            return next(todo, None)
-        except BaseException:
-            bpy.ops.wm.quit_blender()
-            raise
-
-    bpy.app.timers.register(step, first_interval=1.0)
+    take_steps(shots(sys.argv[-1]))
 
 
 if __name__ == "__main__":

@@ -51,29 +51,22 @@ FILE* fopen64(const char* path, const char* mode) {
     return fopen(path, mode);
 }
 
-int open64(const char* path, int flags, ...) {
-    static int (*next)(const char*, int, ...);
-    if (!next) next = dlsym(RTLD_NEXT, "open64");
-    mode_t mode = 0;
-    if (flags & O_CREAT) {
-        __builtin_va_list more;
-        __builtin_va_start(more, flags);
-        mode = __builtin_va_arg(more, mode_t);
-        __builtin_va_end(more);
+#define FAILING_OPEN(name)                                                              \
+    int name(const char* path, int flags, ...) {                                        \
+        static int (*next)(const char*, int, ...);                                      \
+        if (!next) next = dlsym(RTLD_NEXT, #name);                                      \
+        mode_t mode = 0;                                                                \
+        if (flags & O_CREAT) {                                                          \
+            __builtin_va_list more;                                                     \
+            __builtin_va_start(more, flags);                                            \
+            mode = __builtin_va_arg(more, mode_t);                                      \
+            __builtin_va_end(more);                                                     \
+        }                                                                               \
+        return (flags & O_CREAT) && fails("open", path) ? -1 : next(path, flags, mode); \
     }
-    return (flags & O_CREAT) && fails("open", path) ? -1 : next(path, flags, mode);
-}
 
-int open(const char* path, int flags, ...) {
-    mode_t mode = 0;
-    if (flags & O_CREAT) {
-        __builtin_va_list more;
-        __builtin_va_start(more, flags);
-        mode = __builtin_va_arg(more, mode_t);
-        __builtin_va_end(more);
-    }
-    return open64(path, flags, mode);
-}
+FAILING_OPEN(open)
+FAILING_OPEN(open64)
 
 int fclose(FILE* file) {
     static int (*next)(FILE*);
