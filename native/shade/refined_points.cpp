@@ -68,12 +68,12 @@ Anchor triangle_of(const RefinedPoint& at, const Place& place) {
 
 /// How far the surface that rays meet may rise, on one side, above the micropolygon at `p`: as far
 /// as the planes in which it goes on from the corners do, be it curved or creased.
-float height_above(const Vec3f& p, const Blend& blend, const ShadingPoints& around, float side) {
+/// @param p in the camera's space, as the grid is.
+float height_above(const Vec3f& p, const Blend& blend, const Grid& grid, float side) {
     float height = 0.0f;
-    for (const std::size_t k : blend.point) {
-        const float seen = around.backfacing[k] ? -side : side;
-        height = std::max(height, seen * glm::dot(around.p[k] - p, around.geometric_normal[k]));
-    }
+    for (const std::size_t k : blend.point)
+        height =
+            std::max(height, side * glm::dot(grid.shading_p()[k] - p, grid.geometric_normal[k]));
     return height;
 }
 
@@ -132,7 +132,7 @@ std::vector<float> blended_at(const Grid& grid, std::span<const RefinedPoint> wa
 RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const ShadingCamera& camera,
                              const MovingEye& eye, std::span<const RefinedPoint> wanted, bool timed,
                              float point_size) {
-    const ShadingPoints around = shading_points(grid, camera);
+    const Mat3f rotation(camera.world_from_camera);
     const VertexPaths paths(grid, scene);
     const auto time_of = [&](const RefinedPoint& at) {
         return at.time == kAnyTime ? scene.options.frame_time : at.time;
@@ -144,13 +144,13 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
         for (const RefinedPoint& at : wanted)
             axes_at_times.emplace_back(matrix_at(from_object, time_of(at)));
     points.count = wanted.size();
-    points.terminator_offset = around.terminator_offset;
-    points.pixel_width = around.pixel_width;
-    points.pixel_slope = around.pixel_slope;
-    points.share = around.share * refined_light_share(point_size * point_size);
+    points.terminator_offset = grid.terminator_offset;
+    (camera.perspective ? points.pixel_slope : points.pixel_width) = camera.pixel;
+    points.share = grid.point_share * refined_light_share(point_size * point_size);
     for (auto* values : {&points.p, &points.normal, &points.geometric_normal, &points.view,
                          &points.dp_du, &points.dp_dv})
         values->reserve(wanted.size());
+    const auto& faces = grid.shading_positions.faces;
     std::vector<Blend> blends;
     blends.reserve(wanted.size());
     for (const RefinedPoint& at : wanted) blends.push_back(blend_at(grid, at));
@@ -167,12 +167,7 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
         const float time = time_of(at);
         const Blend& blend = blends[i];
         const auto mean = [&](const std::vector<Vec3f>& values) {
-            return blend.mean<Vec3f>([&](std::size_t k) { return values[k]; });
-        };
-        // As modelled: which side the eye sees may change with time.
-        const auto as_modelled = [&](const std::vector<Vec3f>& values) {
-            return blend.mean<Vec3f>(
-                [&](std::size_t k) { return around.backfacing[k] ? -values[k] : values[k]; });
+            return rotation * blend.mean<Vec3f>([&](std::size_t k) { return values[k]; });
         };
         const Anchor at_frame = triangle_of(at, [&](std::uint32_t v) { return paths.at_frame(v); });
         Vec3f p = at_frame.place;
@@ -184,11 +179,10 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
             turn_normal = glm::transpose(glm::inverse(turn));
         }
         const Vec3f view = eye.view(p, time);
-        const Vec3f outward =
-            normalize_or(turn_normal * as_modelled(around.geometric_normal), view);
+        const Vec3f outward = normalize_or(turn_normal * mean(grid.geometric_normal), view);
         const float side = glm::dot(outward, view) < 0.0f ? -1.0f : 1.0f;
         points.p.push_back(p);
-        Vec3f normal = turn_normal * as_modelled(around.normal);
+        Vec3f normal = turn_normal * mean(grid.normal);
         if (grid.knot_normals && at.time != kAnyTime) {
             const ObjectAxes& axes = axes_at_times.empty() ? still : axes_at_times[i];
             normal = normalize_or(
@@ -197,19 +191,19 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
         points.normal.push_back(normalize_or(normal, outward) * side);
         points.geometric_normal.push_back(outward * side);
         points.view.push_back(view);
-        points.dp_du.push_back(turn * mean(around.dp_du) * point_size);
-        points.dp_dv.push_back(turn * mean(around.dp_dv) * point_size);
+        points.dp_du.push_back(turn * mean(grid.dp_du) * point_size);
+        points.dp_dv.push_back(turn * mean(grid.dp_dv) * point_size);
         points.backfacing.push_back(side < 0.0f);
         points.places.push_back(at.place);
-        const float lift = height_above(at_frame.place, blend, around, side);
+        const float lift = height_above(at_frame.place * rotation, blend, grid, side);
         Vec3f offset = points.geometric_normal.back() * lift;
-        if (!around.ray_offset.empty()) offset += turn * mean(around.ray_offset);
+        if (!grid.ray_offset.empty()) offset += turn * mean(grid.ray_offset);
         points.ray_offset.push_back(offset);
-        if (!around.rise.empty()) {
-            const Vec4f rise = blend.mean<Vec4f>([&](std::size_t k) { return around.rise[k]; });
-            points.rise.emplace_back(turn * Vec3f(rise), rise.w);
+        if (!grid.rise.empty()) {
+            const Vec4f rise = blend.mean<Vec4f>([&](std::size_t k) { return grid.rise[k]; });
+            points.rise.emplace_back(turn * rotation * Vec3f(rise), rise.w);
         }
-        if (!around.faces.empty()) points.faces.push_back(around.faces[blend.point[0]]);
+        if (!faces.empty()) points.faces.push_back(faces[blend.point[0]]);
         if (timed) points.times.push_back(at.time);
     }
     for (const GridAttribute& attribute : grid.attributes)

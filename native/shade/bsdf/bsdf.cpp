@@ -122,7 +122,7 @@ Vec3f PointBsdf::evaluate_shape(const Prepared& lobe, const Vec3f& wo, bool is_d
     const LobeShape& shape = *lobe.shape;
     const Vec3f value = lobe.weight * (is_drawn ? shape.evaluate_drawn(wo) : shape.evaluate(wo));
     if (value == Vec3f(0.0f) || part_of(lobe.kind) != LightPart::Diffuse) return value;
-    return value * unshadowed(lobe, wo);
+    return value * unshadowed(lobe, wo, is_drawn);
 }
 
 bool PointBsdf::can_see(const Vec3f& to_center, float radius) const {

@@ -137,7 +137,7 @@ class PointBsdf {
     void prepare_diffuse(Prepared& lobe, const Lobe& source, std::size_t point) const;
     Vec3f evaluate_diffuse(const Prepared& lobe, const Vec3f& wo) const;
     /// Of a diffuse lobe's light, where its normal is bent.
-    float unshadowed(const Prepared& lobe, const Vec3f& wo) const;
+    float unshadowed(const Prepared& lobe, const Vec3f& wo, bool is_drawn) const;
     // glossy_lobe.cpp
     void prepare_microfacets(Prepared& lobe, float roughness) const;
     void stretch(Prepared& lobe, const Vec3f& tangent, float aspect) const;

@@ -77,13 +77,16 @@ Vec3f PointBsdf::evaluate_diffuse(const Prepared& lobe, const Vec3f& wo) const {
             1.0f - (lobe.oren_a * kPi + lobe.oren_b * oren_nayar_g(std::min(cos_o, 1.0f)));
         value = cos_o * (Vec3f(lobe.oren_a + lobe.oren_b * t) + lobe.oren_multiscatter * lost);
     }
-    return lobe.weight * value * unshadowed(lobe, wo);
+    return lobe.weight * value * unshadowed(lobe, wo, false);
 }
 
-float PointBsdf::unshadowed(const Prepared& lobe, const Vec3f& wo) const {
+float PointBsdf::unshadowed(const Prepared& lobe, const Vec3f& wo, bool is_drawn) const {
     if (lobe.normal == m_normal) return 1.0f;
+    const bool transmits = granita::transmits(lobe.kind);
     // Through the surface goes only what transmits.
-    if ((glm::dot(m_normal, wo) < 0.0f) != granita::transmits(lobe.kind)) return 0.0f;
+    if ((glm::dot(m_normal, wo) < 0.0f) != transmits) return 0.0f;
+    // Cycles fades what lamps send through it, and nothing that it meets by chance.
+    if (is_drawn && transmits) return 1.0f;
     return lobe.cosine_bumps ? cosine_bump_shadowing(m_normal, lobe.normal, wo)
                              : bump_shadowing(m_normal, lobe.normal, wo);
 }
