@@ -13,8 +13,7 @@ namespace {
 /// First, middle and last vertex stand for all: this decides how fast, not what is seen.
 Sweep reach_of(const Grid& grid, const Projection& projection, const LensShape& lens) {
     const auto vertices = static_cast<std::size_t>(grid.vertex_count());
-    const Vec2d radius = glm::abs(projection.scale) * projection.lens_radius *
-                         Vec2d(lens.extent_u(), lens.extent_v());
+    const Vec2d radius = glm::abs(projection.scale) * projection.lens_radius * Vec2d(lens.extent());
     Sweep sweep;
     for (const std::size_t v : {std::size_t{0}, vertices / 2, vertices - 1}) {
         Vec2f place(0.0f), length(0.0f);

@@ -67,8 +67,8 @@ class ReferenceHider : public Hider {
                 const Corner<double> c = corner(p, m_tiles.origin(tile));
                 if (c.w <= 0.0) return m_tiles.local_pixels(tile);
                 const double blur = m_projection.lens_reach(c.z) / c.w;
-                const double blur_x = m_projection.scale.x * blur * m_lens.extent_u() + 0.01;
-                const double blur_y = m_projection.scale.y * blur * m_lens.extent_v() + 0.01;
+                const double blur_x = m_projection.scale.x * blur * m_lens.extent().x + 0.01;
+                const double blur_y = m_projection.scale.y * blur * m_lens.extent().y + 0.01;
                 x0 = std::min(x0, c.x / c.w - std::fabs(blur_x));
                 x1 = std::max(x1, c.x / c.w + std::fabs(blur_x));
                 y0 = std::min(y0, c.y / c.w - std::fabs(blur_y));

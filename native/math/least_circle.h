@@ -9,7 +9,8 @@
 
 namespace granita {
 
-/// The smallest circle of confusion among places, whenever within the shutter.
+/// The smallest circle of confusion among places, whenever within the shutter: that within what an
+/// anamorphic lens makes of it.
 class LeastCircle {
   public:
     explicit LeastCircle(const Projection& projection)
@@ -33,8 +34,8 @@ class LeastCircle {
     double diameter() const {
         if (m_sharp || (m_before && m_behind) || !(m_before || m_behind)) return 0.0;
         const double narrowest = m_projection.lens_radius - m_projection.lens_closing;
-        return 2.0 * m_smallest * narrowest *
-               std::min(std::abs(m_projection.scale.x), std::abs(m_projection.scale.y));
+        const Vec2d axes = m_projection.lens_extent() * glm::abs(m_projection.scale);
+        return 2.0 * m_smallest * narrowest * std::min(axes.x, axes.y);
     }
 
   private:

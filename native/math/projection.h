@@ -24,7 +24,8 @@ struct Projection {
     Vec2d scale{1.0};   ///< sx, sy: pixels per unit slope (perspective) or per metre (orthographic)
     Vec2d center{0.0};  ///< cx, cy: where the optical axis meets the raster, pixels
     double near_clip = 0.01, far_clip = 1000.0;  ///< camera-space z, metres
-    double lens_radius = 0.0;                    ///< metres; 0 = pinhole
+    double lens_radius = 0.0;                    ///< metres, its longer half axis; 0 = pinhole
+    double lens_ratio = 1.0;                     ///< of its height to its width (anamorphic)
     double focus = 10.0;                         ///< camera-space z of the sharp plane, metres
     // Within the shutter the lens may close and focus farther away (Camera::lens): the two above
     // are then the widest and the nearest, and these, metres, the way from there.
@@ -32,6 +33,10 @@ struct Projection {
     bool operator==(const Projection&) const = default;
 
     bool has_lens() const { return lens_radius > 0.0; }
+    /// Half axes of the lens, of lens_radius: neither is beyond 1, which all bounds rely on.
+    Vec2d lens_extent() const {
+        return {std::min(1.0, 1.0 / lens_ratio), std::min(1.0, lens_ratio)};
+    }
     double farthest_focus() const { return focus + focus_travel; }
     /// Farthest that the lens shifts what lies at depth z, at any time: metres in h's units.
     double lens_reach(double z) const {

@@ -41,7 +41,7 @@ void read_passes(const Record& r, Options& o) {
         r.fail("'mist' must have a depth of at least 0 and an exponent above 0");
 }
 
-std::vector<Vec2d> lens_knots(const Record& r) {
+std::vector<Vec2d> lens_knots(const Record& r, double widened) {
     const std::vector<double> values = r.values<double>("lens_knots", {-1, 2});
     std::vector<Vec2d> knots;
     for (std::size_t i = 0; i < values.size(); i += 2) {
@@ -50,7 +50,7 @@ std::vector<Vec2d> lens_knots(const Record& r) {
             r.fail(
                 "'lens_knots' must hold finite radii of at least 0 and finite focus distances "
                 "above 0");
-        knots.push_back(knot);
+        knots.emplace_back(widened * knot.x, knot.y);
     }
     if (knots.empty()) r.fail("'lens_knots' must hold at least one knot");
     return knots;
@@ -167,15 +167,16 @@ void read_camera(const Record& r, Camera& camera) {
     }
     if (p.perspective && !(p.near_clip > 0.0)) r.fail("the near clip must be greater than 0");
     if (!(p.far_clip > p.near_clip)) r.fail("the far clip must lie behind the near clip");
-    p.lens_radius = r.number("lens_radius", 0.0);
+    p.lens_ratio = r.number("lens_ratio", 1.0);
+    if (!(p.lens_ratio > 0.0)) r.fail("the aperture ratio must be greater than 0");
+    const double widened = std::max(1.0, 1.0 / p.lens_ratio);
+    p.lens_radius = widened * r.number("lens_radius", 0.0);
     if (!(p.lens_radius >= 0.0)) r.fail("'lens_radius' must be at least 0");
     p.focus = r.number("focus_distance", p.focus);
     if (p.has_lens() && !(p.focus > 0.0)) r.fail("the focus distance must be greater than 0");
-    if (r.has("lens_knots")) camera.lens = LensKnots(lens_knots(r), p);
+    if (r.has("lens_knots")) camera.lens = LensKnots(lens_knots(r, widened), p);
     camera.blades = r.integer("blades", 0);
     camera.blade_rotation = static_cast<float>(r.number("blade_rotation", 0.0));
-    camera.lens_ratio = static_cast<float>(r.number("lens_ratio", 1.0));
-    if (!(camera.lens_ratio > 0.0f)) r.fail("the aperture ratio must be greater than 0");
     r.refuse_others();
 }
 

@@ -20,8 +20,6 @@ struct Camera {
     LensKnots lens;               ///< where the projection's lens moves
     int blades = 0;               ///< 0..2 = round
     float blade_rotation = 0.0f;  ///< radians
-    float lens_ratio =
-        1.0f;  ///< > 1 narrows the lens in x (anamorphic), as Blender's aperture_ratio
     bool operator==(const Camera&) const = default;
 };
 

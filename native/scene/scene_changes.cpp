@@ -46,10 +46,10 @@ bool has_still_lens(const Camera& camera) {
 Camera with_groups_of(Camera camera, const Camera& other) {
     if (!has_still_lens(camera) || !has_still_lens(other)) return camera;
     camera.projection.lens_radius = other.projection.lens_radius;
+    camera.projection.lens_ratio = other.projection.lens_ratio;
     camera.projection.focus = other.projection.focus;
     camera.blades = other.blades;
     camera.blade_rotation = other.blade_rotation;
-    camera.lens_ratio = other.lens_ratio;
     return camera;
 }
 

@@ -65,9 +65,9 @@ class Looks {
         const Mat3f axes{Mat3d(at)};
         Vec3f eye(at[3]);
         if (m_sees_lens)
-            eye += axes *
-                   Vec3f(static_cast<float>(projection.lens_radius) * sample_disc(m_lens(place)),
-                         0.0f);
+            eye += axes * Vec3f(Vec2f(projection.lens_radius * projection.lens_extent()) *
+                                    sample_disc(m_lens(place)),
+                                0.0f);
         // Of what the surface turns to the eye of that time.
         const Vec3f ahead = axes[2];
         Vec3f way = projection.perspective ? eye - p : -ahead;

@@ -192,8 +192,8 @@ void RasterDevice::draw_samples(const RasterBuffers& buffers,
     const Projection& p = m_frame.projection;
     const DepthRange range = depth_range(p);
     const LensShape& lens = m_frame.table->lens();
-    glUniform2f(RASTER_LENS_RADIUS, static_cast<float>(p.lens_radius * lens.extent_u()),
-                static_cast<float>(p.lens_radius * lens.extent_v()));
+    glUniform2f(RASTER_LENS_RADIUS, static_cast<float>(p.lens_radius * lens.extent().x),
+                static_cast<float>(p.lens_radius * lens.extent().y));
     glUniform1f(RASTER_CELL_SIZE, static_cast<float>(m_target.pixel_size()));
     glUniform2d(RASTER_RASTER_SCALE, p.scale.x, p.scale.y);
     glUniform2d(RASTER_RASTER_CENTER, p.center.x, p.center.y);

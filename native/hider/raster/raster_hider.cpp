@@ -361,7 +361,7 @@ std::unique_ptr<RasterBucket> RasterHider::open(const Rect& pixels,
 
 std::unique_ptr<RasterBucket> RasterHider::open(const Rect& pixels,
                                                 const std::vector<const Grid*>& grids) {
-    const LensShape lens(0, 0.0f, 1.0f);
+    const LensShape lens(0, 0.0f, Vec2f(1.0f));
     std::vector<GridSweep> sweeps;
     sweeps.reserve(grids.size());
     std::vector<const GridSweep*> pointers;

@@ -9,9 +9,8 @@
 
 namespace granita {
 
-LensShape::LensShape(int blades, float rotation_rad, float ratio)
-    : m_blades(blades < 3 ? 0 : std::min(blades, 64)),
-      m_narrow(ratio > 0.0f ? 1.0f / ratio : 1.0f) {
+LensShape::LensShape(int blades, float rotation_rad, const Vec2f& extent)
+    : m_blades(blades < 3 ? 0 : std::min(blades, 64)), m_extent(extent) {
     // Side k of the polygon faces the direction rotation + 2 pi k / blades.
     for (int k = 0; k <= m_blades; ++k) {
         const double angle = rotation_rad + std::numbers::pi * (2.0 * k - 1.0) / m_blades;
@@ -25,7 +24,10 @@ void LensShape::map(float* u, float* v, std::size_t count) const {
         map_to_disc(u, v, count);
     else
         map_polygon(u, v, count);
-    for (std::size_t i = 0; i < count; ++i) u[i] *= m_narrow;
+    for (std::size_t i = 0; i < count; ++i) {
+        u[i] *= m_extent.x;
+        v[i] *= m_extent.y;
+    }
 }
 
 // The first number picks the wedge; the rest of it and the second one a point of the wedge's

@@ -55,7 +55,7 @@ SampleTable::SampleTable(const Options& options, const Camera& camera, SampleNee
       m_shutter(options.shutter_curve),
       m_height(options.height),
       m_rolling(options.rolling_shutter),
-      m_lens(camera.blades, camera.blade_rotation, camera.lens_ratio),
+      m_lens(camera.blades, camera.blade_rotation, Vec2f(camera.projection.lens_extent())),
       m_lens_knots(camera.lens) {
     if (options.samples < 1 || options.samples > 1 << 16)
         throw SceneError("render settings",

@@ -13,8 +13,8 @@ TileGrid::TileGrid(const Projection& projection, const LensShape& lens) : m_proj
     m_simd.inverse_farthest = static_cast<float>(1.0 / projection.farthest_focus());
     if (!projection.has_lens()) return;
     const double radius = projection.lens_radius * (1.0 + 1e-6);
-    m_simd.lens_x = static_cast<float>(std::fabs(projection.scale.x) * radius * lens.extent_u());
-    m_simd.lens_y = static_cast<float>(std::fabs(projection.scale.y) * radius * lens.extent_v());
+    m_simd.lens_x = static_cast<float>(std::fabs(projection.scale.x) * radius * lens.extent().x);
+    m_simd.lens_y = static_cast<float>(std::fabs(projection.scale.y) * radius * lens.extent().y);
 }
 
 void TileGrid::load(const GridSweep& sweep) {

@@ -135,7 +135,7 @@ TEST(GridSweep, VerticesThatAreNotFiniteBoundNothing) {
     grid.positions[40] = Vec3f(NAN);
     grid.positions[100] = Vec3f(INFINITY);
     expect_holds_brute_force(shot, grid);
-    const GridSweep sweep(grid, shot.camera.projection, LensShape(0, 0.0f, 1.0f));
+    const GridSweep sweep(grid, shot.camera.projection, LensShape(0, 0.0f, Vec2f(1.0f)));
     for (std::size_t p = 0; p < sweep.parts().size(); ++p) {
         // A hundredth of a pixel for what bounds may grow.
         EXPECT_GE(sweep.bounds(p, 0).x0, 1.99f);

@@ -49,7 +49,7 @@ TEST(TimeSlabs, WhatShowsForAMomentIsSeen) {
 
 TEST(TimeSlabs, CoverTheShutterAndTheirGrid) {
     const Grid grid = moving_rectangle(0, 0, 4, 2, 5, 40, 8);
-    const GridSweep sweep(grid, pixel_camera().projection, LensShape(0, 0.0f, 1.0f));
+    const GridSweep sweep(grid, pixel_camera().projection, LensShape(0, 0.0f, Vec2f(1.0f)));
     const auto& slabs = sweep.slabs();
     ASSERT_GE(slabs.size(), 8u);
     float time = 0;

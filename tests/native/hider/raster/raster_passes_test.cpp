@@ -285,7 +285,8 @@ TEST(RasterGeometry, small_grids_are_drawn_together) {
     std::vector<const GridSweep*> of;
     sweeps.reserve(grids.size());
     for (const Grid& grid : grids)
-        of.push_back(&sweeps.emplace_back(grid, pixel_projection(), LensShape(0, 0.0f, 1.0f)));
+        of.push_back(
+            &sweeps.emplace_back(grid, pixel_projection(), LensShape(0, 0.0f, Vec2f(1.0f))));
     const RasterGeometry geometry(of);
     EXPECT_EQ(geometry.opaque().size(), 4u);
     EXPECT_EQ(geometry.indices().size(), 6000u);

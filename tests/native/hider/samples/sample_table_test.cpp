@@ -382,17 +382,17 @@ Moments lens_moments(const LensShape& lens) {
 }
 
 TEST(LensShape, DiscHasADiscsMoments) {
-    const Moments m = lens_moments(LensShape(0, 0, 1));
+    const Moments m = lens_moments(LensShape(0, 0, Vec2f(1)));
     EXPECT_NEAR(m.u, 0, 1e-5);
     EXPECT_NEAR(m.uu, .25, 1e-5);
     EXPECT_NEAR(m.vv, .25, 1e-5);
     EXPECT_NEAR(m.uv, 0, 1e-5);
-    EXPECT_NEAR(lens_moments(LensShape(0, 0, 2)).uu, .0625, 1e-5);
+    EXPECT_NEAR(lens_moments(LensShape(0, 0, Vec2f(.5f, 1))).uu, .0625, 1e-5);
 }
 
 TEST(LensShape, PolygonsHaveTheirMoments) {
     for (const int blades : {3, 4, 6, 9}) {
-        const Moments m = lens_moments(LensShape(blades, .3f, 1));
+        const Moments m = lens_moments(LensShape(blades, .3f, Vec2f(1)));
         // Polar second moment of a regular polygon with circumradius 1, per area.
         const double polar = (2 + std::cos(2 * M_PI / blades)) / 6;
         EXPECT_NEAR(m.u, 0, 1e-4);
@@ -401,7 +401,7 @@ TEST(LensShape, PolygonsHaveTheirMoments) {
     }
     // A side, not a corner, faces the rotation's direction: the square with rotation 0 is upright.
     std::vector<float> u{.999999f}, v{.5f};
-    LensShape(4, 0, 1).map(u.data(), v.data(), 1);
+    LensShape(4, 0, Vec2f(1)).map(u.data(), v.data(), 1);
     EXPECT_NEAR(std::fabs(u[0]) + std::fabs(v[0]), std::sqrt(.5), 1e-3);
 }
 
