@@ -21,7 +21,12 @@ from .scene.instance import linked, place
 from .scene.lamp_emitters import add_emitters
 from .scene.lamps import energies, lamp_graphs, place_lamps, read_lamps
 from .scene.light_linking import link_lights
-from .scene.light_paths import report_occlusion, report_transparent_glass, report_volume_bounces
+from .scene.light_paths import (
+    report_clamp_direct,
+    report_occlusion,
+    report_transparent_glass,
+    report_volume_bounces,
+)
 from .scene.options import options_record, rendered_frame, scene_crop
 from .scene.persistent_state import PersistentState
 from .scene.scene_objects import read_scene_objects
@@ -145,6 +150,7 @@ def export_frame(
     instances, materials = _fill_empty_slots(instances, list(seen.materials))
     report_occlusion(scene, _evaluated_world(depsgraph), report)
     report_transparent_glass(scene, report)
+    report_clamp_direct(scene, report)
     report_volume_bounces(scene, settings, (*materials, world), report)
     images = _each_once(seen.images + world_images + list(lamp_images.values()))
     images, colors = _in_color_spaces(images, report)

@@ -45,7 +45,8 @@ struct Bounces {
     int diffuse = 4, glossy = 4, transmission = 12;  ///< of these, by what reflects
     int volume = 0;                                  ///< of these, in media, beside the first
     int transparent = 8;         ///< surfaces passed through unbent, which are no bounces
-    bool caustics = true;        ///< glossy lobes reflect what reaches diffuse ones
+    /// Whether glossy lobes send on what reaches diffuse ones: mirrored, and through them.
+    bool reflective_caustics = true, refractive_caustics = true;
     float filter_glossy = 1.0f;  ///< how much blurrier they are for ways that few take; 0 = none
     float clamp = 10.0f;  ///< most that a path brings, red, green and blue summed; 0 = no end
     /// As Cycles' Fast GI, Replace: from this one on what bounces is the world's light, as far as

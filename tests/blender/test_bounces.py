@@ -13,6 +13,7 @@ from bounced_parts import picture, render_bounced, room, surface
 
 from granita.export.scene.light_paths import (
     light_paths,
+    report_clamp_direct,
     report_occlusion,
     report_transparent_glass,
 )
@@ -32,6 +33,7 @@ def test_limits_are_those_of_cycles(scene):
     cycles.transmission_bounces, cycles.transparent_max_bounces = 6, 2
     cycles.sample_clamp_indirect, cycles.blur_glossy = 4.0, 0.5
     cycles.caustics_reflective, cycles.volume_bounces = False, 5
+    cycles.caustics_refractive = True
     limits = light_paths(scene, scene.granita)
     # Cycles compares the sum of the channels with three times its clamp.
     assert limits == {
@@ -42,7 +44,8 @@ def test_limits_are_those_of_cycles(scene):
         "volume_bounces": 5,
         "transparent_bounces": 2,
         "clamp_indirect": 12.0,
-        "caustics": False,
+        "reflective_caustics": False,
+        "refractive_caustics": True,
         "filter_glossy": 0.5,
     }
     scene.granita.bounces = "FAST"
@@ -95,6 +98,14 @@ def test_transparent_glass_is_named_where_it_would_show(scene, transparent, glas
     named = []
     report_transparent_glass(scene, lambda *words: named.append(words))
     assert [what for what, _ in named] == ["render settings"] * (transparent and glass)
+
+
+@pytest.mark.parametrize("clamp", [0.0, 2.0])
+def test_a_limit_of_direct_light_is_named(scene, clamp):
+    scene.cycles.sample_clamp_direct = clamp
+    named = []
+    report_clamp_direct(scene, lambda *words: named.append(words))
+    assert [what for what, _ in named] == ["render settings"] * (clamp > 0.0)
 
 
 def test_fast_gi_is_read(scene):

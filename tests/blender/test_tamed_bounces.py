@@ -248,6 +248,26 @@ def test_what_the_filter_blurs_keeps_the_energy_that_it_was_made_with(scene, ren
     assert ours[inner].mean() == pytest.approx(theirs[inner].mean(), rel=0.007)
 
 
+@pytest.mark.parametrize("reflective", [False, True])
+@pytest.mark.parametrize("refractive", [False, True])
+@pytest.mark.parametrize("kind", ["Refraction", "Glass", "Glossy"])
+def test_each_switch_of_caustics_takes_its_own_lobes(scene, render, kind, reflective, refractive):
+    """A rough sheet hangs over a matte floor, under a bright sky and beside a lit wall: what it lets through and what it
+    mirrors had one switch, and light of a half or of nothing was told by nobody."""
+    floor = scene_parts.add_square(scene, "Floor", 2.0)
+    surface(floor, "ShaderNodeBsdfDiffuse", (0.8, 0.8, 0.8))
+    sheet = scene_parts.add_square(scene, "Sheet", 8.0, (0.0, 0.0, 1.0))
+    sheet.visible_camera = False
+    surface(sheet, f"ShaderNodeBsdf{kind}", (0.9, 0.9, 0.9), Roughness=0.3)
+    scene_parts.set_world(scene, (0.5, 0.5, 0.5))
+    scene.cycles.caustics_reflective = reflective
+    scene.cycles.caustics_refractive = refractive
+    scene_parts.add_camera(scene, (0.0, 0.0, 0.5), ortho_scale=1.0)
+    scene.render.resolution_x = scene.render.resolution_y = 16
+    theirs, ours = render_bounced(scene, render, 2048, limit=4)
+    assert ours.mean() == pytest.approx(theirs.mean(), rel=0.015)
+
+
 def test_a_little_refraction_takes_nothing_from_what_is_translucent(scene, render):
     """Where its facets, blurred or not, send no sample, those of the translucent lobe shared the light with it all the same:
     9 %."""

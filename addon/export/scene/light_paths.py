@@ -12,7 +12,8 @@ LIMITS = (
     ("volume_bounces", "volume_bounces", 0),
     ("transparent_max_bounces", "transparent_bounces", 8),
     ("sample_clamp_indirect", "clamp_indirect", 10.0),
-    ("caustics_reflective", "caustics", True),
+    ("caustics_reflective", "reflective_caustics", True),
+    ("caustics_refractive", "refractive_caustics", True),
     ("blur_glossy", "filter_glossy", 1.0),
 )
 # Cycles holds three times its clamp against the sum of the channels.
@@ -87,6 +88,17 @@ def report_transparent_glass(scene, report):
     cycles = getattr(scene, "cycles", None)
     if scene.render.film_transparent and getattr(cycles, "film_transparent_glass", False):
         report("render settings", "Transparent Glass is not used: glass is as opaque as anything")
+
+
+def report_clamp_direct(scene, report):
+    """Names Cycles' limit of light that comes straight from lamps, where there is one.
+
+    Args:
+        scene: whose settings of Cycles count.
+        report: called with (datablock, message).
+    """
+    if getattr(getattr(scene, "cycles", None), "sample_clamp_direct", 0.0) > 0.0:
+        report("render settings", "Clamp Direct is not used: direct light stays as bright as it is")
 
 
 def report_volume_bounces(scene, settings, records, report):

@@ -300,11 +300,11 @@ class BouncedLight::Wave {
     /// Glossy lobes that would throw noise onto diffuse ones: left out, or, as by Cycles' Filter
     /// Glossy, blurred as much as the way is improbable.
     void tame(const std::vector<MetPath>& batch, SurfaceClosure& closure) const {
-        const auto is_glossy = [](const Lobe& lobe) {
-            return part_of(lobe.kind) != LightPart::Diffuse;
+        const auto is_left_out = [&](const Lobe& lobe) {
+            return (is_mirror(lobe.kind) && !m_limits.reflective_caustics) ||
+                   (is_pane(lobe.kind) && !m_limits.refractive_caustics);
         };
-        if (!m_limits.caustics && batch.front().path->was_diffuse)
-            std::erase_if(closure.lobes, is_glossy);
+        if (batch.front().path->was_diffuse) std::erase_if(closure.lobes, is_left_out);
         if (m_limits.filter_glossy == 0.0f) return;
         for (Lobe& lobe : closure.lobes) {
             if (!is_blurred(lobe.kind) || lobe.distribution == Distribution::Sharp) continue;
