@@ -84,7 +84,9 @@ struct ShadingSystem::Impl : PointShader {
     /// Whether some of the grid's micropolygons look otherwise at some time of the shutter than
     /// when it opens: all else being equal, light samples too.
     bool changes_in_time(Grid& grid) const {
-        if (!moves || (!light && are_equal(grid.radiance))) return false;
+        if (!moves || (!light && (are_equal(grid.radiance) ||
+                                  material(grid.material).radiance.program.is_still())))
+            return false;
         const TimeProbes probes(grid, scene.options.frame_time);
         const Grid found = refine(grid, probes.points, 1.0f);
         grid.broken_radiance |= found.broken_radiance || found.broken_opacity;
@@ -103,7 +105,7 @@ struct ShadingSystem::Impl : PointShader {
 
     /// The same of its opacity: of what grazes the view, say.
     bool opacity_changes_in_time(Grid& grid) const {
-        if (!moves) return false;
+        if (!moves || material(grid.material).opacity_program.is_still()) return false;
         const TimeProbes probes(grid, scene.options.frame_time);
         return probes.any_changes(opacity_at(grid, probes.points), thresholds.difference,
                                   opacity_difference);

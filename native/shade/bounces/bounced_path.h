@@ -67,6 +67,8 @@ struct BouncedPath {
         is_first = true;
     }
 
+    WayCounts counts() const { return {depth, diffuse, glossy, transmission, passed}; }
+
     /// Its weight, were it its point's only one.
     Vec3f throughput() const { return next.weight / next.share; }
 

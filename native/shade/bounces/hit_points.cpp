@@ -147,6 +147,7 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
         m_points.places[i] = met[i].place;
         m_points.ray_lengths[i] = met[i].length;
         m_points.seen_from[i] = met[i].seen;
+        if (const BouncedPath* path = met[i].path) m_points.counts.push_back(path->counts());
         if (!still) {
             ObjectAxes& axes = m_input.axes_at_times.emplace_back();
             axes.world_from_object = met[i].frame->world_from_object;

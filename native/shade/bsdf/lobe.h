@@ -171,6 +171,12 @@ struct SurfaceClosure {
                                       ///< = 1 - transparency
 };
 
+/// Of light's way from the camera to a point, as Cycles counts it: surfaces that sent it on, by
+/// how, and those that let it pass.
+struct WayCounts {
+    int bounces = 0, diffuse = 0, glossy = 0, transmission = 0, passed = 0;
+};
+
 /// The points of a grid in shading space: world axes, origin at the camera (scenes far from the
 /// world's origin keep their bits), at the frame time.
 struct ShadingPoints {
@@ -214,6 +220,8 @@ struct ShadingPoints {
     std::vector<float> times;
     /// [n] of the rays that see them, metres; empty: from the camera
     std::vector<float> ray_lengths;
+    /// [n] what the ways have counted that meet them; empty: none do
+    std::vector<WayCounts> counts;
     /// [n] from the eye along the rays that see them, metres; empty: straight
     std::vector<float> seen_from;
     /// How many surfaces, and places in media, lie between them and the camera; of places in media

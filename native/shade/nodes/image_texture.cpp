@@ -214,7 +214,7 @@ void build_image_texture(NodeBuilder& b) {
                 }
                 give_back(places, texels);
             },
-            reads, {color.slot, alpha.slot});
+            reads, {color.slot, alpha.slot}, print.width == 0.0f);
     }
     b.output_color("Color", color);
     b.output("Alpha", alpha);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Light Path: what a program is run for.  Programs are compiled anew for each type of ray that
 // their graph tells apart, so its outputs are constants and what does not depend on them is folded
-// away.  Light Falloff, which the length of rays alone changes, is its neighbour.
+// away; of what ways from surface to surface meet, they have counted the depths.  Light Falloff,
+// which the length of rays alone changes, is its neighbour.
 #include "shade/nodes/light_path.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "shade/nodes/nodes.h"
 #include "shade/programs/shading_camera.h"
@@ -15,8 +17,39 @@ namespace granita {
 namespace {
 
 constexpr const char* kLength = "Ray Length";
-/// What Cycles counts along a path and nothing here does.
-constexpr const char* kUncounted = "Transparent Depth";
+/// Which nothing counts but ways from surface to surface.
+constexpr const char* kPassed = "Transparent Depth";
+
+struct Depth {
+    const char* output;
+    int WayCounts::*count;
+};
+constexpr Depth kDepths[] = {{"Ray Depth", &WayCounts::bounces},
+                             {"Diffuse Depth", &WayCounts::diffuse},
+                             {"Glossy Depth", &WayCounts::glossy},
+                             {"Transmission Depth", &WayCounts::transmission},
+                             {kPassed, &WayCounts::passed}};
+
+bool is_length(const std::string& output) {
+    return output == kLength;
+}
+bool is_depth(const std::string& output) {
+    return std::ranges::find(kDepths, output, &Depth::output) != std::end(kDepths);
+}
+
+/// Whether it is part of a way that counts what it meets.
+bool counts(RayType ray) {
+    return ray != RayType::Camera && ray != RayType::Shadow;
+}
+
+/// Whether some input of the node is such an output of Light Path.
+bool reads_output(const NodeGraph& graph, const Node& node, bool (*is_such)(const std::string&)) {
+    return std::ranges::any_of(node.inputs, [&](const auto& input) {
+        const NodeLink* link = std::get_if<NodeLink>(&input.second);
+        return link && is_such(link->output) &&
+               graph.nodes[static_cast<std::size_t>(link->node)].type == "ShaderNodeLightPath";
+    });
+}
 
 }  // namespace
 
@@ -41,19 +74,20 @@ float light_path_value(const std::string& output, RayType ray) {
 bool told_apart(const std::set<std::string>& outputs, RayType a, RayType b) {
     return std::any_of(outputs.begin(), outputs.end(), [&](const std::string& output) {
         if (output == kLength) return (a == RayType::Shadow) != (b == RayType::Shadow);
+        if (is_depth(output) && counts(a) != counts(b)) return true;
         return light_path_value(output, a) != light_path_value(output, b);
     });
 }
 
 bool reads_ray_length(const NodeGraph& graph) {
-    const auto is_length = [&graph](const auto& input) {
-        const NodeLink* link = std::get_if<NodeLink>(&input.second);
-        return link && link->output == kLength &&
-               graph.nodes[static_cast<std::size_t>(link->node)].type == "ShaderNodeLightPath";
-    };
     return std::ranges::any_of(graph.nodes, [&](const Node& node) {
-        return node.type == "ShaderNodeLightFalloff" || std::ranges::any_of(node.inputs, is_length);
+        return node.type == "ShaderNodeLightFalloff" || reads_output(graph, node, is_length);
     });
+}
+
+bool reads_depth(const NodeGraph& graph) {
+    return std::ranges::any_of(
+        graph.nodes, [&](const Node& node) { return reads_output(graph, node, is_depth); });
 }
 
 FloatSource ray_length(NodeBuilder& b) {
@@ -95,15 +129,28 @@ void build_light_falloff(NodeBuilder& b) {
 }
 
 void build_light_path(NodeBuilder& b) {
+    const auto of_type = [&b](const char* name) {
+        return b.lamp() ? 0.0f : light_path_value(name, b.ray_type());
+    };
     for (const char* name :
          {"Is Camera Ray", "Is Shadow Ray", "Is Diffuse Ray", "Is Glossy Ray", "Is Singular Ray",
-          "Is Reflection Ray", "Is Transmission Ray", "Is Volume Scatter Ray", "Ray Depth",
-          "Diffuse Depth", "Glossy Depth", "Transparent Depth", "Transmission Depth"})
-        b.output(name, FloatSource{-1, b.lamp() ? 0.0f : light_path_value(name, b.ray_type())});
+          "Is Reflection Ray", "Is Transmission Ray", "Is Volume Scatter Ray"})
+        b.output(name, FloatSource{-1, of_type(name)});
+    const bool is_met = b.has_surface() && counts(b.ray_type());
+    for (const Depth& depth : kDepths) {
+        const float least = of_type(depth.output);
+        const auto counted = [least, count = depth.count](const ShadingInput& in, std::size_t i) {
+            const std::vector<WayCounts>& counts = in.points->counts;
+            return counts.empty() ? least : static_cast<float>(counts[i].*count);
+        };
+        b.output(depth.output, is_met && b.is_read(depth.output) ? b.geometry<float>(counted)
+                                                                 : FloatSource{-1, least});
+    }
     // Cycles counts lamps and the world as one bounce further than what is before them.
     const float before = b.lamp() ? 0.0f : light_path_value("Ray Depth", b.ray_type());
     if (b.is_world()) b.output("Ray Depth", FloatSource{-1, 1.0f + before});
-    if (b.is_read(kUncounted)) b.warn("Transparent Depth is not counted; it is 0");
+    if (b.is_read(kPassed))
+        b.warn("Transparent Depth is counted from surface to surface alone; else it is 0");
     b.output(kLength, ray_length(b));
 }
 

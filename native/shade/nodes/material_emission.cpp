@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "math/luminance.h"
+#include "shade/nodes/light_path.h"
 #include "shade/rays/ray_type.h"
 
 namespace granita {
@@ -42,8 +43,8 @@ MaterialEmission::MaterialEmission(const Scene& scene, TextureStore& textures,
                                       nullptr, ray);
             const CompiledSurface& surface = own ? *own : seen[i];
             const VectorSource& sent = emission(surface);
-            // Where rays are told apart, there are several.
-            const bool is_only = ray == kLightRays.front();
+            // Where rays are told apart, there are several, or one of each way.
+            const bool is_only = ray == kLightRays.front() && !reads_depth(material.graph);
             program.reset();
             if (is_only && !sent.is_constant())
                 program = {surface.requests, surface.radiance.program.part({sent.slot}), sent};

@@ -147,7 +147,7 @@ class NodeBuilder {
                         [&](const auto&... column) { return function(column[i]...); }, columns);
                 }
             },
-            {inputs.slot...}, {out.slot});
+            {inputs.slot...}, {out.slot}, true);
         return out;
     }
 
@@ -168,8 +168,10 @@ class NodeBuilder {
     Source<Out> new_source() {
         return {m_program.new_slot(sizeof(Out) / sizeof(float)), Out{}};
     }
-    void add_step(std::function<void(Run&)> run, std::vector<int> reads, std::vector<int> writes) {
-        m_program.steps.push_back({std::move(run), std::move(reads), std::move(writes)});
+    /// @param is_still as Step's.
+    void add_step(std::function<void(Run&)> run, std::vector<int> reads, std::vector<int> writes,
+                  bool is_still = false) {
+        m_program.steps.push_back({std::move(run), std::move(reads), std::move(writes), is_still});
     }
 
     bool moves_surface() const { return m_program.moves_surface; }

@@ -79,6 +79,11 @@ void Program::execute(Run& run) const {
     }
 }
 
+bool Program::is_still() const {
+    return std::ranges::all_of(m_steps, &Step::is_still) &&
+           std::ranges::all_of(m_loads, [](const Load& load) { return load.bump_width == 0.0f; });
+}
+
 void Program::renumber_requests(const std::vector<int>& request) {
     for (Load& load : m_loads) load.request = request[load.request];
 }

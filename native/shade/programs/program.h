@@ -134,6 +134,8 @@ struct Load {
 struct Step {
     std::function<void(Run&)> run;
     std::vector<int> reads, writes;  ///< slots
+    /// What it writes depends on what it reads alone: not on where and when the points are.
+    bool is_still = false;
 };
 
 class Program {
@@ -157,6 +159,8 @@ class Program {
     /// request[old] -> new index, once the material's request list is final.
     void renumber_requests(const std::vector<int>& request);
     std::size_t step_count() const { return m_steps.size(); }
+    /// Whether a place on a surface looks the same wherever it goes, and whoever looks.
+    bool is_still() const;
 
   private:
     std::vector<Load> m_loads;
