@@ -130,7 +130,10 @@ def turning():
         head = bpy.context.object
         head.location = (3.2 * (i - 2), 0, 0.6)
         head.data.polygons.foreach_set("use_smooth", [True] * len(head.data.polygons))
-        head.modifiers.new("Subdivision", "SUBSURF").render_levels = 2
+        # Applied: of a modifier Granita has the limit surface and Cycles polygons, another shape.
+        head.modifiers.new("Subdivision", "SUBSURF").levels = 2
+        bpy.ops.object.modifier_apply(modifier="Subdivision")
+        head.data.polygons.foreach_set("use_smooth", [True] * len(head.data.polygons))
         head.data.materials.append(shader)
         animate(head, "rotation_euler", 2, 0.25 * (-1) ** i)
     diffuse_floor(scene, (0.6, 0.6, 0.6))
