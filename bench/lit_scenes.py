@@ -133,7 +133,6 @@ def turning():
         # Applied: of a modifier Granita has the limit surface and Cycles polygons, another shape.
         head.modifiers.new("Subdivision", "SUBSURF").levels = 2
         bpy.ops.object.modifier_apply(modifier="Subdivision")
-        head.data.polygons.foreach_set("use_smooth", [True] * len(head.data.polygons))
         head.data.materials.append(shader)
         animate(head, "rotation_euler", 2, 0.25 * (-1) ** i)
     diffuse_floor(scene, (0.6, 0.6, 0.6))

@@ -300,11 +300,21 @@ class BouncedLight::Wave {
     /// Glossy lobes that would throw noise onto diffuse ones: left out, or, as by Cycles' Filter
     /// Glossy, blurred as much as the way is improbable.
     void tame(const std::vector<MetPath>& batch, SurfaceClosure& closure) const {
-        const auto is_left_out = [&](const Lobe& lobe) {
-            return (is_mirror(lobe.kind) && !m_limits.reflective_caustics) ||
-                   (is_pane(lobe.kind) && !m_limits.refractive_caustics);
+        const auto throws_no_caustics = [&](const Lobe& lobe) {
+            switch (lobe.kind) {
+                case LobeKind::Glossy:
+                case LobeKind::GlossyToon:
+                    return !m_limits.reflective_caustics;
+                case LobeKind::Refraction:
+                case LobeKind::ThinGlass:
+                    return !m_limits.refractive_caustics;
+                default:
+                    return false;  // hair always does
+            }
         };
-        if (batch.front().path->was_diffuse) std::erase_if(closure.lobes, is_left_out);
+        // Cycles asks what sent the ray, not what was before.
+        if (is_diffuse(batch.front().path->next.ray.type))
+            std::erase_if(closure.lobes, throws_no_caustics);
         if (m_limits.filter_glossy == 0.0f) return;
         for (Lobe& lobe : closure.lobes) {
             if (!is_blurred(lobe.kind) || lobe.distribution == Distribution::Sharp) continue;

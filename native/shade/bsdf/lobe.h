@@ -62,13 +62,6 @@ constexpr bool is_of_facets(LobeKind kind) {
 constexpr bool is_blurred(LobeKind kind) {
     return is_of_facets(kind) || kind == LobeKind::ThinGlass || kind == LobeKind::PrincipledHair;
 }
-/// Lobes of which each of Cycles' two switches of caustics takes one kind: hair has none.
-constexpr bool is_mirror(LobeKind kind) {
-    return kind == LobeKind::Glossy || kind == LobeKind::GlossyToon;
-}
-constexpr bool is_pane(LobeKind kind) {
-    return kind == LobeKind::Refraction || kind == LobeKind::ThinGlass;
-}
 /// Of lobe_shape.h.
 constexpr bool is_shaped(LobeKind kind) {
     return kind > LobeKind::Refraction;

@@ -285,7 +285,6 @@ LitGrid DirectLight::Impl::lit_grid(const ShadingPoints& points, const SurfaceCl
     grid.in_medium = closure.lobes.front().kind == LobeKind::Phase;
     grid.depth = static_cast<int>(points.depth % ShadingPoints::kDepths);
     grid.receives = receives(key);
-    grid.meets_surfaces = !shining.empty();
     return grid;
 }
 
@@ -373,7 +372,6 @@ std::vector<Vec3f> DirectLight::reflect(const ShadingPoints& points, const Surfa
     grid.by_lobe = m_impl->world.by_lobe();
     grid.balance = noise;
     grid.leaving = leaving;
-    grid.meets_surfaces |= leaving != nullptr;
     LitSets sets = lit_points(m_impl->set, grid, points, closure, key, paths, dark && !leaving);
     for (auto& [receives, lit] : sets) {
         grid.receives = receives;

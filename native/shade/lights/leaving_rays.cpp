@@ -8,11 +8,10 @@
 namespace granita {
 
 Vec3f inwards(const ShadingPoints& points, std::size_t i) {
-    constexpr float kStep = 0.02f;  // of a micropolygon
     if (!points.edges) return Vec3f(0.0f);
     const std::size_t column = i % points.columns, row = i / points.columns;
     const auto towards = [](std::size_t at, std::size_t last) {
-        return (at == 0 ? kStep : 0.0f) - (at == last ? kStep : 0.0f);
+        return (at == 0 ? kInwards : 0.0f) - (at == last ? kInwards : 0.0f);
     };
     return towards(column, points.columns - 1) * points.dp_du[i] +
            towards(row, points.count / points.columns - 1) * points.dp_dv[i];

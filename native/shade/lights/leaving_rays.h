@@ -10,6 +10,8 @@ namespace granita {
 /// on both: half of their rays would start behind the other.  Spheres have no such edges, and a
 /// step along their tangents' chords would lead into them.
 Vec3f inwards(const ShadingPoints& points, std::size_t i);
+/// So far, of the way to the next point.
+inline constexpr float kInwards = 0.02f;
 
 /// Metres from a point to its neighbours.
 float width_of(const ShadingPoints& points, std::size_t i);

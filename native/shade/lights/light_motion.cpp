@@ -5,6 +5,7 @@
 
 #include "geometry/anchor.h"
 #include "scene/knot_time.h"
+#include "shade/lights/leaving_rays.h"
 #include "shade/lights/vertex_paths.h"
 
 namespace granita {
@@ -43,6 +44,20 @@ Vec3f normal_at(const Grid& grid, const std::vector<Vec3f>& places, std::size_t 
     return length > 0.0f ? across * ((same ? 1.0f : -1.0f) / length) : seen;
 }
 
+/// inwards(), as far as the vertex lies on the grid's border.
+Vec3f inwards_from(const Grid& grid, const std::vector<Vec3f>& places, std::size_t vertex) {
+    const int v = static_cast<int>(vertex), i = v % grid.up(), j = v / grid.up();
+    const auto step = [&](int x, int y) {
+        return kInwards * (places[static_cast<std::size_t>(y * grid.up() + x)] - places[vertex]);
+    };
+    Vec3f sum(0.0f);
+    if (i == 0) sum += step(1, j);
+    if (i == grid.n_u) sum += step(i - 1, j);
+    if (j == 0) sum += step(i, 1);
+    if (j == grid.n_v) sum += step(i, j - 1);
+    return sum;
+}
+
 }  // namespace
 
 PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints& points)
@@ -70,6 +85,8 @@ PointPaths::PointPaths(const Grid& grid, const Scene& scene, const ShadingPoints
                 const Vec3f beside = points.p[i] - at_frame[i].place;
                 place.p += carried(at_frame[i], at) * beside;
             }
+            if (points.edges)
+                place.p += inwards_from(grid, places, anchors.empty() ? i : anchors[i]);
             place.start = place.p;
             if (!points.ray_offset.empty() && !grid.disjoint) place.start += points.ray_offset[i];
             place.normal = normal_at(grid, places, anchors.empty() ? i : anchors[i], points, i);

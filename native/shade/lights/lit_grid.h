@@ -44,9 +44,8 @@ struct LitGrid {
     bool placed = false;   ///< points go by places in the frame's sequences, as samples do
     std::vector<SobolPoints> sequences = {};  ///< [dimensions] as far as they were asked for
     std::uint64_t receives = ~0ULL;           ///< Instance::receives
-    int depth = 0;                ///< surfaces, and places in media, between it and the camera
-    bool in_medium = false;       ///< its lobes are phase functions
-    bool meets_surfaces = false;  ///< rays look for surfaces, be it those that shine
+    int depth = 0;           ///< surfaces, and places in media, between it and the camera
+    bool in_medium = false;  ///< its lobes are phase functions
     std::uint64_t shadow_rays = 0, occlusion_rays = 0;
     std::uint64_t lamps_chosen = 0, light_nodes = 0;
     /// [points] the luminance of a point's even samples less that of its odd ones: as much as its

@@ -33,7 +33,7 @@ LitSets lit_points(const LampSet& set, LitGrid& grid, const ShadingPoints& point
         }
         if (is_dark) continue;
         const Vec3f& normal = points.geometric_normal[i];
-        const Vec3f p = points.p[i] + (grid.meets_surfaces ? inwards(points, i) : Vec3f(0.0f));
+        const Vec3f p = points.p[i] + inwards(points, i);
         const Vec3f offset = points.ray_offset.empty() ? Vec3f(0.0f) : points.ray_offset[i];
         if (set.rays && !points.faces.empty())
             ray_offset = set.rays->ray_offset({key.instance, points.faces[i]});

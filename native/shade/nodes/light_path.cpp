@@ -30,25 +30,13 @@ constexpr Depth kDepths[] = {{"Ray Depth", &WayCounts::bounces},
                              {"Transmission Depth", &WayCounts::transmission},
                              {kPassed, &WayCounts::passed}};
 
-bool is_length(const std::string& output) {
-    return output == kLength;
-}
 bool is_depth(const std::string& output) {
     return std::ranges::find(kDepths, output, &Depth::output) != std::end(kDepths);
 }
 
 /// Whether it is part of a way that counts what it meets.
-bool counts(RayType ray) {
+bool is_counted(RayType ray) {
     return ray != RayType::Camera && ray != RayType::Shadow;
-}
-
-/// Whether some input of the node is such an output of Light Path.
-bool reads_output(const NodeGraph& graph, const Node& node, bool (*is_such)(const std::string&)) {
-    return std::ranges::any_of(node.inputs, [&](const auto& input) {
-        const NodeLink* link = std::get_if<NodeLink>(&input.second);
-        return link && is_such(link->output) &&
-               graph.nodes[static_cast<std::size_t>(link->node)].type == "ShaderNodeLightPath";
-    });
 }
 
 }  // namespace
@@ -74,20 +62,20 @@ float light_path_value(const std::string& output, RayType ray) {
 bool told_apart(const std::set<std::string>& outputs, RayType a, RayType b) {
     return std::any_of(outputs.begin(), outputs.end(), [&](const std::string& output) {
         if (output == kLength) return (a == RayType::Shadow) != (b == RayType::Shadow);
-        if (is_depth(output) && counts(a) != counts(b)) return true;
+        if (is_depth(output) && is_counted(a) != is_counted(b)) return true;
         return light_path_value(output, a) != light_path_value(output, b);
     });
 }
 
 bool reads_ray_length(const NodeGraph& graph) {
+    const auto is_length = [&graph](const auto& input) {
+        const NodeLink* link = std::get_if<NodeLink>(&input.second);
+        return link && link->output == kLength &&
+               graph.nodes[static_cast<std::size_t>(link->node)].type == "ShaderNodeLightPath";
+    };
     return std::ranges::any_of(graph.nodes, [&](const Node& node) {
-        return node.type == "ShaderNodeLightFalloff" || reads_output(graph, node, is_length);
+        return node.type == "ShaderNodeLightFalloff" || std::ranges::any_of(node.inputs, is_length);
     });
-}
-
-bool reads_depth(const NodeGraph& graph) {
-    return std::ranges::any_of(
-        graph.nodes, [&](const Node& node) { return reads_output(graph, node, is_depth); });
 }
 
 FloatSource ray_length(NodeBuilder& b) {
@@ -136,14 +124,14 @@ void build_light_path(NodeBuilder& b) {
          {"Is Camera Ray", "Is Shadow Ray", "Is Diffuse Ray", "Is Glossy Ray", "Is Singular Ray",
           "Is Reflection Ray", "Is Transmission Ray", "Is Volume Scatter Ray"})
         b.output(name, FloatSource{-1, of_type(name)});
-    const bool is_met = b.has_surface() && counts(b.ray_type());
+    const bool is_met = b.has_surface() && !b.is_volume() && is_counted(b.ray_type());
     for (const Depth& depth : kDepths) {
         const float least = of_type(depth.output);
         const auto counted = [least, count = depth.count](const ShadingInput& in, std::size_t i) {
             const std::vector<WayCounts>& counts = in.points->counts;
             return counts.empty() ? least : static_cast<float>(counts[i].*count);
         };
-        b.output(depth.output, is_met && b.is_read(depth.output) ? b.geometry<float>(counted)
+        b.output(depth.output, is_met && b.is_read(depth.output) ? b.geometry<float>(counted, true)
                                                                  : FloatSource{-1, least});
     }
     // Cycles counts lamps and the world as one bounce further than what is before them.

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "math/luminance.h"
-#include "shade/nodes/light_path.h"
 #include "shade/rays/ray_type.h"
 
 namespace granita {
@@ -43,11 +42,14 @@ MaterialEmission::MaterialEmission(const Scene& scene, TextureStore& textures,
                                       nullptr, ray);
             const CompiledSurface& surface = own ? *own : seen[i];
             const VectorSource& sent = emission(surface);
-            // Where rays are told apart, there are several, or one of each way.
-            const bool is_only = ray == kLightRays.front() && !reads_depth(material.graph);
+            // Where rays are told apart, there are several.
+            const bool is_only = ray == kLightRays.front();
             program.reset();
             if (is_only && !sent.is_constant())
                 program = {surface.requests, surface.radiance.program.part({sent.slot}), sent};
+            // Where ways differ, samples of a lamp do not know whose they are.
+            if (program && program->program.counts() && scene.options.bounces.most > 0)
+                program.reset();
             const float seen_of_it = sent.is_constant() ? luminance(sent.constant) : kInfinity;
             if (!(seen_of_it <= m_brightest[i])) m_brightest[i] = seen_of_it;
             varies =
@@ -68,7 +70,8 @@ void MaterialEmission::warn(const Scene& scene, Report& report) const {
         for (const Instance& instance : scene.instances)
             if (instance.blocker_set >= 0 && std::ranges::any_of(instance.materials, is_no_lamp))
                 report.warn(instance.name,
-                            "its emission varies by kind of ray, so that what blocks its light is "
+                            "its emission varies by kind of ray or by depth, so that what blocks "
+                            "its light is "
                             "not linked");
         return;
     }

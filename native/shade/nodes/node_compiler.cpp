@@ -337,6 +337,7 @@ VolumeProgram compile_volume(const NodeGraph& graph, const Scene& scene, Texture
                            .is_world = owner.is_world,
                            .material_index = owner.material_index,
                            .ray_type = ray,
+                           .is_volume = true,
                            .read = read_outputs(graph, graph.volume, owner.name, {})};
     const SurfaceBuilder built = build_closures(builder, graph, SurfaceBuilder::Socket::Volume);
     VolumeProgram compiled;

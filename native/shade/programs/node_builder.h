@@ -36,6 +36,7 @@ struct ProgramBuilder {
     bool moves_surface = false;      ///< displacement does
     bool has_moved_normals = false;  ///< a mesh's own, which maps bend, are those of its relief
     RayType ray_type = RayType::Camera;
+    bool is_volume = false;  ///< of what fills a thing or the world
     /// How far shifted values lie from the point, pixels: heights of bumps are told apart over it,
     /// on the surface and not as it is seen from the side (Cycles).  0: by the points' own steps.
     float bump_width = 0.0f;
@@ -75,6 +76,7 @@ class NodeBuilder {
     const Light* lamp() const { return m_program.lamp; }
     /// Whether points have a normal and are seen from somewhere.
     bool has_surface() const { return !is_world() || lamp(); }
+    bool is_volume() const { return m_program.is_volume; }
     const Scene& scene() const { return m_program.scene; }
     int material_index() const { return m_program.material_index; }
     RayType ray_type() const { return m_program.ray_type; }
@@ -152,8 +154,9 @@ class NodeBuilder {
     }
 
     /// A value that the points give: function(input, i).
+    /// @param counts as Step's.
     template <class Out, class F>
-    Source<Out> geometry(F function) {
+    Source<Out> geometry(F function, bool counts = false) {
         const Source<Out> out{m_program.new_slot(sizeof(Out) / sizeof(float)), Out{}};
         add_step(
             [=](Run& run) {
@@ -161,6 +164,7 @@ class NodeBuilder {
                 for (std::size_t i = 0; i < run.count(); ++i) result[i] = function(run.input(), i);
             },
             {}, {out.slot});
+        m_program.steps.back().counts = counts;
         return out;
     }
 

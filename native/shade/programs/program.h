@@ -10,6 +10,7 @@
 // A program is immutable; any number of threads run it, each with a Run of its own.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <span>
 #include <utility>
@@ -136,6 +137,7 @@ struct Step {
     std::vector<int> reads, writes;  ///< slots
     /// What it writes depends on what it reads alone: not on where and when the points are.
     bool is_still = false;
+    bool counts = false;  ///< it reads ShadingPoints::counts
 };
 
 class Program {
@@ -161,6 +163,8 @@ class Program {
     std::size_t step_count() const { return m_steps.size(); }
     /// Whether a place on a surface looks the same wherever it goes, and whoever looks.
     bool is_still() const;
+    /// Whether it may differ from way to way (ShadingPoints::counts).
+    bool counts() const { return std::ranges::any_of(m_steps, &Step::counts); }
 
   private:
     std::vector<Load> m_loads;
