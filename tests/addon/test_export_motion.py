@@ -3,7 +3,15 @@
 
 import numpy as np
 import pytest
-from export.motion.motion_path import Tracks, bends_still, finer_level, keep_fewest, no_tracks
+from export.motion.motion_path import (
+    Tracks,
+    bends_still,
+    body_motions,
+    finer_level,
+    keep_fewest,
+    no_tracks,
+    shared_segments,
+)
 from export.motion.shutter_steps import hold_order, match
 from export.scene.shutter import shutter, split_time
 
@@ -78,6 +86,38 @@ def test_another_level_is_read_where_chords_are_too_long(strength, still):
     """c h^2 / 4 over quarters is 1/32 pixel at c = 2."""
     path = {t: np.array([[strength * (t / 16) ** 2]]) for t in (0, 4, 8, 12, 16)}
     assert bends_still(path, 4, metres) is still
+
+
+def turn(angle, place=(0.0, 0.0, 0.0)):
+    """About z, of what stands at a place."""
+    found = np.eye(4)
+    found[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+    found[:3, 3] = found[:3, :3] @ place
+    return found
+
+
+def test_parts_of_a_body_have_one_motion():
+    """In single precision, wherever they stand and lie; what turns on by itself, or has no volume, has another."""
+    parts = [
+        turn(0.0, (3.0, 1.0, -2.0)),
+        turn(1.2, (-50.0, 7.0, 20.0)) * np.float32(0.3),
+        np.eye(4),
+    ]
+    parts[1][3, 3] = 1.0
+    first = np.array([*parts, np.zeros((4, 4))])
+    last = turn(0.4) @ first
+    last[2] = turn(0.45)
+    path = {0: first.astype(np.float32).astype(float), 8: last.astype(np.float32).astype(float)}
+    found = body_motions(path)
+    assert np.abs(found[0] - found[1]).max() <= 1
+    assert np.abs(found[0] - found[2]).max() > 100
+    assert not found[3].any()
+
+
+def test_parts_of_one_thing_have_all_their_knots():
+    """Those of others stay as they are."""
+    segments, groups = np.array([2, 1, 3, 1, 4, 1]), np.array([7, -3, 7, 5, 5, -8])
+    assert shared_segments(segments, groups).tolist() == [6, 1, 6, 4, 4, 1]
 
 
 def test_only_what_moves_has_knots():

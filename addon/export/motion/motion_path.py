@@ -13,6 +13,8 @@ import numpy as np
 # The largest distance in pixels by which a path may leave its chords.  A moving edge is then drawn
 # with an error of at most a 32nd of the pixel's range a pixel of way: below the noise of 256 samples.
 MAX_BEND_PIXELS = 1.0 / 32.0
+# By which motions of one body may differ: of single precision in places as far out as the scene goes there is less.
+_SAME_MOTION = 1e-4
 
 
 def chord(path, tick, stride):
@@ -82,6 +84,47 @@ def keep_fewest(path, ticks, level, measure):
         segments = np.full(np.shape(fits), level) if segments is None else segments
         segments[fits] = s
     return segments
+
+
+def body_motions(path):
+    """Whole numbers, the same for all parts of one body: what takes them from the first tick to the last.
+
+    Args:
+        path: {tick: float64 [m, 4, 4]}, affine.
+
+    Returns:
+        int64 [m, 12].
+    """
+    first, last = path[min(path)], path[max(path)]
+    x, y, z = (first[:, :3, column] for column in range(3))
+    inverse = np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=1)
+    with np.errstate(all="ignore"):  # of what has no volume
+        inverse /= np.einsum("ni,ni->n", x, inverse[:, 0])[:, None, None]
+        turn = last[:, :3, :3] @ inverse
+        shift = last[:, :3, 3] - np.einsum("nij,nj->ni", turn, first[:, :3, 3])
+        shift /= 1.0 + np.abs(first[:, :3, 3]).max(initial=0.0)
+        steps = np.rint(np.concatenate([turn.reshape(-1, 9), shift], axis=1) / _SAME_MOTION)
+    steps[~(np.abs(steps) < 1e15)] = 0.0
+    return steps.astype(np.int64)
+
+
+def shared_segments(segments, groups):
+    """As many for each thing as all of its group need: by chords of their own, walls of a house that turns would come
+    apart, and let light in.
+
+    Args:
+        segments: int [m], each a divisor of one number.
+        groups: int [m].
+
+    Returns:
+        int [m].
+    """
+    order = np.argsort(groups, kind="stable")
+    first = np.flatnonzero(np.diff(groups[order], prepend=groups[order[0]] - 1))
+    shared = np.empty_like(segments)
+    counts = np.diff(first, append=len(groups))
+    shared[order] = np.repeat(np.lcm.reduceat(segments[order], first), counts)
+    return shared
 
 
 @dataclass

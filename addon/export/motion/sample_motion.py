@@ -11,12 +11,22 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..base.report import poll
+from ..base.updates import originals
 from ..geometry.subdivision import cages_only
 from ..scene.simulations import unbaked_rigid_bodies
 from .animated_visibility import shown_throughout
 from .appearing_instances import AppearingInstances
 from .instance_velocity import InstanceVelocities
-from .motion_path import MAX_BEND_PIXELS, Tracks, bends_still, finer_level, keep_fewest, no_tracks
+from .motion_path import (
+    MAX_BEND_PIXELS,
+    Tracks,
+    bends_still,
+    body_motions,
+    finer_level,
+    keep_fewest,
+    no_tracks,
+    shared_segments,
+)
 from .pixels import PixelScale
 from .shutter_steps import ShutterSteps
 
@@ -143,6 +153,38 @@ def _paths(scene, steps):
         yield ("ENERGY", address), path, [(path, _share_of(path))]
 
 
+def _rigid_groups(visit, numbers, path):
+    """What moves as one, parts of a thing that may touch: children of one topmost parent, be it an instance of their
+    collection, as far as they do not move about by themselves.  Particles and what nodes scatter are alone, and so is
+    what comes again.
+
+    Args:
+        visit: of the frame.
+        numbers: int [m], of Runs: those below the visit's length are its things.
+        path: {tick: float64 [m, 4, 4]}.
+
+    Returns:
+        int [m].
+    """
+    everything = originals()
+
+    def root(prototype):
+        top = everything.get(prototype.parent_address or prototype.address)
+        if top is None or (prototype.parent_address and top.instance_type != "COLLECTION"):
+            return 0
+        while top.parent is not None:
+            top = top.parent
+        return top.as_pointer()
+
+    groups = -1 - np.asarray(numbers, dtype=np.int64)
+    known = np.flatnonzero(numbers < len(visit.prototype))
+    prototypes, which = np.unique(visit.prototype[numbers[known]], return_inverse=True)
+    roots = np.array([root(visit.prototypes[p]) for p in prototypes], dtype=np.int64)[which]
+    groups[known] = np.where(roots != 0, roots, groups[known])
+    bodies = np.column_stack([groups, body_motions(path)])
+    return np.unique(bodies, axis=0, return_inverse=True)[1].reshape(-1)
+
+
 def _share_of(path):
     """measure([1]) of energies, for the same bound: a 256th of the largest is as bad as a 32nd of a
     pixel."""
@@ -166,7 +208,8 @@ def _result(scene, steps, ticks, level, check_cancel):
         segments = np.lcm.reduce([keep_fewest(p, ticks, level, measure) for p, measure in checks])
         if isinstance(key, np.ndarray):
             knots = np.stack([path[tick] for tick in range(0, ticks + 1, stride)])
-            motion.tracks = Tracks(key, knots, segments)
+            shared = shared_segments(segments, _rigid_groups(scene.visit, key, path))
+            motion.tracks = Tracks(key, knots, shared)
             continue
         knots = np.stack([path[t] for t in range(0, ticks + 1, ticks // int(segments[0]))])
         if isinstance(key, str):
