@@ -2,7 +2,8 @@
 """Animated files by others against Cycles' converged pictures (make_moving_references.py), at 1024 samples.
 
 Emission shows motion and coverage alone: RMSE over the pixels that blur changes.  Lit shows the file's own materials
-and lights without bounces: FLIP over the frame.  The limits are the project's promise: .006 and .02.
+and lights without bounces: FLIP over the frame.  The limits: the project's promise of .006, and a fifth above the most
+that is seen.
 """
 
 import subprocess
@@ -18,7 +19,7 @@ from pictures import flip, load  # noqa: E402
 
 pytest.importorskip("flip_evaluator", reason="FLIP is installed by ./dev test")
 
-# Of blur alone, and where light is noise as well: three quarters of the seconds are spared, no FLIP is above .011.
+# Of blur alone, and where light is noise as well: three quarters of the seconds are spared, no FLIP is above .0104.
 SAMPLES = {"emission": 1024, "lit": 256}
 SCENES = ("bend", "camera", "snake", "instances", "morph", "alien", "particles", "hair")
 
@@ -56,4 +57,4 @@ def test_lit_like_cycles(name, tmp_path):
     image = picture(name, "lit", tmp_path)
     mean = flip(image, truth)[1]
     print(f"{name}: FLIP {mean:.4f}")
-    assert mean < 0.02
+    assert mean < 0.0125
