@@ -48,7 +48,7 @@ Vec3f normal_at(const Grid& grid, const std::vector<Vec3f>& places, std::size_t 
 Vec3f inwards_from(const Grid& grid, const std::vector<Vec3f>& places, std::size_t vertex) {
     const int v = static_cast<int>(vertex), i = v % grid.up(), j = v / grid.up();
     const auto step = [&](int x, int y) {
-        return kInwards * (places[static_cast<std::size_t>(y * grid.up() + x)] - places[vertex]);
+        return kInwards * (places[y * grid.up() + x] - places[vertex]);
     };
     Vec3f sum(0.0f);
     if (i == 0) sum += step(1, j);
