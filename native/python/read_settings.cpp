@@ -110,10 +110,8 @@ void read_options(const Record& r, Options& o) {
         in_range(r, "volume_bounces", r.integer("volume_bounces", o.bounces.volume), 0, 1024);
     o.bounces.transparent = in_range(
         r, "transparent_bounces", r.integer("transparent_bounces", o.bounces.transparent), 0, 1024);
-    o.bounces.reflective_caustics =
-        r.boolean("reflective_caustics", o.bounces.reflective_caustics);
-    o.bounces.refractive_caustics =
-        r.boolean("refractive_caustics", o.bounces.refractive_caustics);
+    o.bounces.reflective_caustics = r.boolean("reflective_caustics", o.bounces.reflective_caustics);
+    o.bounces.refractive_caustics = r.boolean("refractive_caustics", o.bounces.refractive_caustics);
     o.bounces.filter_glossy =
         at_least(r, "filter_glossy", r.number("filter_glossy", o.bounces.filter_glossy), 0.0);
     o.bounces.clamp =

@@ -44,7 +44,7 @@ struct Bounces {
     int most = 0;  ///< 0: surfaces are lit by lamps and the world alone
     int diffuse = 4, glossy = 4, transmission = 12;  ///< of these, by what reflects
     int volume = 0;                                  ///< of these, in media, beside the first
-    int transparent = 8;         ///< surfaces passed through unbent, which are no bounces
+    int transparent = 8;  ///< surfaces passed through unbent, which are no bounces
     /// Whether glossy lobes send on what reaches diffuse ones: mirrored, and through them.
     bool reflective_caustics = true, refractive_caustics = true;
     float filter_glossy = 1.0f;  ///< how much blurrier they are for ways that few take; 0 = none
