@@ -10,14 +10,29 @@ import scene_parts
 from mathutils import Vector
 
 
-def surface(thing, kind, color, **inputs):
-    tree = node_comparison.Tree(thing)
+def closure(tree, kind, color, **inputs):
+    """A shader's node; Glossy by the name that this Blender has for it."""
     shader = tree.add(kind if hasattr(bpy.types, kind) else "ShaderNodeBsdfAnisotropic")
     shader.inputs["Color"].default_value = (*color, 1.0)
     for name, value in inputs.items():
         shader.inputs[name].default_value = value
+    return shader
+
+
+def surface(thing, kind, color, **inputs):
+    tree = node_comparison.Tree(thing)
+    shader = closure(tree, kind, color, **inputs)
     tree.link(shader.outputs[0], tree.output.inputs["Surface"])
     return thing
+
+
+def met_by_chance(material):
+    """What it sends out has no light samples in Cycles."""
+    cycles = material.cycles
+    if hasattr(cycles, "emission_sampling"):
+        cycles.emission_sampling = "NONE"
+    else:
+        cycles.sample_as_light = False
 
 
 # Towards the camera's left, right, bottom and top; straight ahead.

@@ -4,7 +4,7 @@
 import bpy
 import pytest
 import scene_parts
-from bounced_parts import render_bounced, room, surface
+from bounced_parts import closure, met_by_chance, render_bounced, room, surface
 from node_comparison import Tree, socket
 
 pytestmark = pytest.mark.lit
@@ -22,26 +22,14 @@ def shine_by(thing, name):
     tree.link(socket(depth.outputs, name), scale.inputs[0])
     tree.link(scale.outputs[0], tenth.inputs["Strength"])
     mix, add = tree.add("ShaderNodeMixShader"), tree.add("ShaderNodeAddShader")
-    glossy = "ShaderNodeBsdfGlossy"
-    kinds = (
-        "ShaderNodeBsdfDiffuse",
-        glossy if hasattr(bpy.types, glossy) else "ShaderNodeBsdfAnisotropic",
-    )
-    for kind, slot in zip(kinds, mix.inputs[1:], strict=True):
-        shader = tree.add(kind)
-        shader.inputs["Color"].default_value = (0.5, 0.5, 0.5, 1.0)
-        if "Roughness" in shader.inputs:
-            shader.inputs["Roughness"].default_value = 0.0
+    for kind, slot in zip(("Diffuse", "Glossy"), mix.inputs[1:], strict=True):
+        shader = closure(tree, f"ShaderNodeBsdf{kind}", (0.5, 0.5, 0.5), Roughness=0.0)
         tree.link(shader.outputs[0], slot)
     for shader, slot in zip((mix, tenth), add.inputs, strict=True):
         tree.link(shader.outputs[0], slot)
     tree.link(add.outputs[0], tree.output.inputs["Surface"])
     # Else Cycles mixes in what lamps' samples count, one less.
-    cycles = thing.data.materials[0].cycles
-    if hasattr(cycles, "emission_sampling"):
-        cycles.emission_sampling = "NONE"
-    else:
-        cycles.sample_as_light = False
+    met_by_chance(thing.data.materials[0])
 
 
 @pytest.mark.parametrize("name", KINDS)

@@ -4,7 +4,7 @@
 import bpy
 import pytest
 import scene_parts
-from bounced_parts import look_at_stage, render_bounced, surface, worst_block
+from bounced_parts import look_at_stage, met_by_chance, render_bounced, surface, worst_block
 from mathutils import Vector
 from node_comparison import Tree
 
@@ -113,10 +113,7 @@ def test_what_shines_in_first_reflections_is_not_indirect(scene, render, roughne
     kind = tree.nodes.new("ShaderNodeLightPath")  # what varies by it is met by chance alone
     node = next(n for n in tree.nodes if n.type == "EMISSION")
     tree.links.new(kind.outputs["Is Glossy Ray"], node.inputs["Strength"])
-    if hasattr(shining.cycles, "emission_sampling"):
-        shining.cycles.emission_sampling = "NONE"
-    else:
-        shining.cycles.sample_as_light = False
+    met_by_chance(shining)
     wall = scene_parts.add_square(scene, "Wall", 4.0, (0.0, 3.0, 1.6), shining)
     wall.rotation_euler.x = 1.57
     look_at_stage(scene, 3.0, 0.5)

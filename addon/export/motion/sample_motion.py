@@ -208,8 +208,9 @@ def _result(scene, steps, ticks, level, check_cancel):
         segments = np.lcm.reduce([keep_fewest(p, ticks, level, measure) for p, measure in checks])
         if isinstance(key, np.ndarray):
             knots = np.stack([path[tick] for tick in range(0, ticks + 1, stride)])
-            shared = shared_segments(segments, _rigid_groups(scene.visit, key, path))
-            motion.tracks = Tracks(key, knots, shared)
+            if (segments != segments[0]).any():
+                segments = shared_segments(segments, _rigid_groups(scene.visit, key, path))
+            motion.tracks = Tracks(key, knots, segments)
             continue
         knots = np.stack([path[t] for t in range(0, ticks + 1, ticks // int(segments[0]))])
         if isinstance(key, str):

@@ -71,8 +71,7 @@ void MaterialEmission::warn(const Scene& scene, Report& report) const {
             if (instance.blocker_set >= 0 && std::ranges::any_of(instance.materials, is_no_lamp))
                 report.warn(instance.name,
                             "its emission varies by kind of ray or by depth, so that what blocks "
-                            "its light is "
-                            "not linked");
+                            "its light is not linked");
         return;
     }
     for (std::size_t i = 0; i < scene.materials.size(); ++i)
