@@ -3,6 +3,7 @@
 
 import hashlib
 import json
+import math
 import os
 import re
 import statistics
@@ -146,3 +147,22 @@ def errors(image, truth):
         "percentile": float(np.percentile(difference.max(-1), 99.9)),
         "flip": float(pictures.flip(image, truth)[1]),
     }
+
+
+def seconds_to(target, points):
+    """(seconds until an error, mark) of [(seconds, error)] by log-log interpolation.
+
+    The mark is "<" where the cheapest frame is good enough already, "~" where the last two frames were extended, and
+    None stands for seconds where those no longer improve.
+    """
+    points = sorted(points)
+    if points[0][1] <= target:
+        return points[0][0], "<"
+    for (s0, e0), (s1, e1) in zip(points, points[1:], strict=False):
+        if e1 <= target:
+            return s0 * (s1 / s0) ** (math.log(target / e0) / math.log(e1 / e0)), ""
+    (s0, e0), (s1, e1) = points[-2:]
+    slope = math.log(e1 / e0) / math.log(s1 / s0)
+    if slope > -0.2:
+        return None, ""
+    return s1 * (target / e1) ** (1 / slope), "~"

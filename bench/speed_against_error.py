@@ -14,7 +14,6 @@ time keeps its rows, and draws docs/speed_against_error.svg.
 
 import argparse
 import json
-import math
 from pathlib import Path
 
 import frames
@@ -62,25 +61,6 @@ def setting(kind, rate, samples):
     }
 
 
-def seconds_to(target, points):
-    """(seconds until an error, mark) of [(seconds, error)] by log-log interpolation.
-
-    The mark is "<" where the cheapest frame is good enough already, "~" where the last two frames were extended, and
-    None stands for seconds where those no longer improve.
-    """
-    points = sorted(points)
-    if points[0][1] <= target:
-        return points[0][0], "<"
-    for (s0, e0), (s1, e1) in zip(points, points[1:], strict=False):
-        if e1 <= target:
-            return s0 * (s1 / s0) ** (math.log(target / e0) / math.log(e1 / e0)), ""
-    (s0, e0), (s1, e1) = points[-2:]
-    slope = math.log(e1 / e0) / math.log(s1 / s0)
-    if slope > -0.2:
-        return None, ""
-    return s1 * (target / e1) ** (1 / slope), "~"
-
-
 def nanoseconds(rows):
     """What one more sample a pixel costs, from the fewest to the most; REGULAR multiplies them by its passes."""
     first, last = rows[0], rows[-1]
@@ -92,7 +72,7 @@ def soonest(target, rows):
     """(seconds until an error, mark, dicing rate) at the dicing rate that gets there first."""
     found = []
     for rate, of in by_rate(rows).items():
-        seconds, mark = seconds_to(target, [(r["seconds"], r["rmse"]) for r in of])
+        seconds, mark = frames.seconds_to(target, [(r["seconds"], r["rmse"]) for r in of])
         # What is extended from few samples at a coarse rate was not seen.
         if seconds is not None and (rate == 1 or mark != "~"):
             found.append((seconds, mark, rate))

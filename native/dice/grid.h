@@ -130,6 +130,8 @@ struct Grid {
     float terminator_offset = 0.0f;
     /// Part of a square pixel that a point stands for, at most 1: how much light it is worth.
     float point_share = 1.0f;
+    /// Part of a point's light samples that blur leaves, once it is known; 0 = not yet.
+    float sharpness = 0.0f;
 
     RasterBounds bounds;   ///< swept over shutter and lens
     bool motion = false;   ///< knots differ, or it does not exist throughout

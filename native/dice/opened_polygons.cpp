@@ -51,21 +51,27 @@ OpenedMesh::Start OpenedPolygons::start(const BasePatch& patch, int budget) cons
 }
 
 std::vector<Bounds3f> OpenedPolygons::boxes(const BasePatch& patch, const Vec2d* corner_uv) const {
-    std::vector<Vec2d> uv(corner_uv, corner_uv + 4);
+    static thread_local std::vector<CornerWeights> weights;  // kept for its memory
+    weights.clear();
+    const std::span<const Vec2d> uv(corner_uv, 4);
+    const auto add = [&](std::initializer_list<Vec2d> more) {
+        for (const Vec2d& at : more) weights.emplace_back(patch.kind, at);
+    };
     if (patch.kind == PatchKind::TrianglePair) {
         // In the hull of a (u, v) rectangle's corners and of where the crease enters and leaves it.
         Vec2d lo = uv[0], hi = uv[0];
         for (const Vec2d& c : uv) lo = glm::min(lo, c), hi = glm::max(hi, c);
         const double from = std::max(lo.x, lo.y), to = std::min(hi.x, hi.y);
-        uv = {lo, {hi.x, lo.y}, hi, {lo.x, hi.y}};
-        if (from < to) uv.insert(uv.end(), {Vec2d(from), Vec2d(to)});
+        add({lo, {hi.x, lo.y}, hi, {lo.x, hi.y}});
+        if (from < to) add({Vec2d(from), Vec2d(to)});
+    } else {
+        add({uv[0], uv[1], uv[2], uv[3]});
     }
     std::vector<Bounds3f> boxes(static_cast<std::size_t>(knot_count()));
     for (int k = 0; k < knot_count(); ++k) {
         const Corners at = corners(patch, k);
-        for (const Vec2d& c : uv)
-            boxes[static_cast<std::size_t>(k)].add(
-                Vec3f(blend(at.p, CornerWeights(patch.kind, c).w)));
+        for (const CornerWeights& of : weights)
+            boxes[static_cast<std::size_t>(k)].add(Vec3f(blend(at.p, of.w)));
     }
     return boxes;
 }
@@ -120,8 +126,11 @@ void OpenedPolygons::sample(const BasePatch& patch, std::span<const Vec2d> uv,
     out.geometric_normal.resize(n);
     const bool has_rise = rises();
     out.rise.resize(has_rise ? n : 0);
+    TangentFrame at;
     for (std::size_t i = 0; i < n; ++i) {
-        const TangentFrame at = face.frame(weights[i]);
+        const bool is_same = i > 0 && !face.is_smooth && weights[i].du == weights[i - 1].du &&
+                             weights[i].dv == weights[i - 1].dv;
+        if (!is_same) at = face.frame(weights[i]);
         out.su[i] = Vec3f(at.su);
         out.sv[i] = Vec3f(at.sv);
         out.geometric_normal[i] = Vec3f(at.geometric_normal);

@@ -131,6 +131,7 @@ void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& stati
 
 void SharedGrid::drop_radiance() {
     m_grid->light_share = 0.0f;
+    m_grid->sharpness = 0.0f;
     m_grid->broken_radiance = false;
     m_grid->radiance.clear();
     m_grid->found = {};

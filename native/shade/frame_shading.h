@@ -68,6 +68,11 @@ struct FrameShading {
         return index < 0 ? materials.back() : materials[index];
     }
     bool reflects(std::int32_t index) const { return material(index).radiance.sources.reflects(); }
+    /// Whether what it shows goes by attributes alone: neither by light nor by where its points
+    /// are.
+    bool is_painted(std::int32_t index) const {
+        return !reflects(index) && material(index).radiance.program.is_still();
+    }
     bool scatters(std::int32_t index) const { return material(index).radiance.scatters(); }
     const NodeGraph& graph_of(std::int32_t index) const {
         return scene.materials[static_cast<std::size_t>(index)].graph;

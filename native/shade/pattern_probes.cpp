@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "math/displayed.h"
 #include "math/luminance.h"
@@ -41,13 +42,6 @@ RefinedPoint in_square(const Grid& grid, int micropolygon, float x, float y) {
     return point;
 }
 
-/// [vertices] at a point.
-Vec3f between(const std::vector<Vec3f>& values, const RefinedPoint& at) {
-    Vec3f sum(0.0f);
-    for (std::size_t k = 0; k < 3; ++k) sum += at.weight[k] * values[at.vertex[k]];
-    return sum;
-}
-
 Vec3f head_on(const Lobe& lobe, std::size_t i) {
     const bool by_f0 = lobe.fresnel == FresnelKind::Schlick ||
                        lobe.fresnel == FresnelKind::F82Tint ||
@@ -79,8 +73,7 @@ static_assert(sizeof(Look) == kLookWidth * sizeof(float));
 }  // namespace
 
 std::vector<float> looks_of(const ShadingPoints& points, const SurfaceClosure& closure) {
-    std::vector<float> looks;
-    looks.reserve(points.count * kLookWidth);
+    std::vector<float> looks(points.count * kLookWidth);
     for (std::size_t i = 0; i < points.count; ++i) {
         Look look;
         // As modelled: about a silhouette what faces the eye turns over, and no pattern.
@@ -89,9 +82,7 @@ std::vector<float> looks_of(const ShadingPoints& points, const SurfaceClosure& c
             look.add(head_on(lobe, i), lobe.normal[i] * side, lobe.roughness[i],
                      part_of(lobe.kind) == LightPart::Diffuse);
         if (!closure.emission.empty()) look.sent = closure.emission[i];
-        for (const Vec3f& v : {look.color, look.bent, look.diffuse, look.sent})
-            looks.insert(looks.end(), {v.x, v.y, v.z});
-        looks.push_back(look.gloss);
+        std::memcpy(&looks[i * kLookWidth], &look, sizeof(look));
     }
     return looks;
 }
@@ -166,14 +157,6 @@ bool PatternProbes::miss_looks(const Grid& grid, std::span<const float> looks,
               displayed_difference(shown, shown + Vec3f(here * turned)) <= threshold))
             return true;
     }
-    return false;
-}
-
-bool PatternProbes::miss_opacity(const Grid& grid, std::span<const Vec3f> opacity,
-                                 float threshold) const {
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (opacity_difference(opacity[i], between(grid.opacity, points[i])) > threshold)
-            return true;
     return false;
 }
 

@@ -45,8 +45,16 @@ class PatternProbes {
     /// @param is_lit whether light may be where corners are too dark to tell.
     bool miss_looks(const Grid& grid, std::span<const float> looks, std::span<const float> of_grid,
                     bool is_lit, float threshold) const;
-    /// The same of opacity, [points] and Grid::opacity.
-    bool miss_opacity(const Grid& grid, std::span<const Vec3f> opacity, float threshold) const;
+    /// The same of what is seen as it is: `found` [points] where the grid has `values` [vertices].
+    /// @param difference(a, b) as UnsettledThresholds::difference is.
+    template <class Difference>
+    bool miss(const std::vector<Vec3f>& values, std::span<const Vec3f> found, float threshold,
+              const Difference& difference) const {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            // What is no number is not what corners tell.
+            if (!(difference(found[i], between(values, points[i])) <= threshold)) return true;
+        return false;
+    }
 
     /// Whether diffuse lobes at some point reflect what a corner around it does not tell of others'
     /// light (Grid::found), as nothing near it reflects any: it is unknown there, or dark.

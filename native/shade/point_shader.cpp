@@ -23,7 +23,7 @@ void PointShader::find_light(PointShading& s, const Grid& grid, const PointPaths
         draw_as_diffuse(s.closure, has_body);
     }
     // What is scattered is told by corners that are not black; there samples were darker still.
-    if (doubts && surface.is_patterned && !surface.scatters())
+    if (doubts && surface.is_patterned && !surface.scatters() && surface.sources.reflects())
         doubts->looks = looks_of(points, s.closure);
     if (doubts && light && !grid.shades_lattice())
         doubts->highlights = light->highlights(grid, points, s.closure);

@@ -118,6 +118,13 @@ GridAttribute blended(const GridAttribute& from, const std::vector<Blend>& blend
     return out;
 }
 
+std::vector<Blend> blends_at(const Grid& grid, std::span<const RefinedPoint> wanted) {
+    std::vector<Blend> blends;
+    blends.reserve(wanted.size());
+    for (const RefinedPoint& at : wanted) blends.push_back(blend_at(grid, at));
+    return blends;
+}
+
 }  // namespace
 
 std::vector<float> blended_at(const Grid& grid, std::span<const RefinedPoint> wanted,
@@ -151,9 +158,7 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
                          &points.dp_du, &points.dp_dv})
         values->reserve(wanted.size());
     const auto& faces = grid.shading_positions.faces;
-    std::vector<Blend> blends;
-    blends.reserve(wanted.size());
-    for (const RefinedPoint& at : wanted) blends.push_back(blend_at(grid, at));
+    const std::vector<Blend> blends = blends_at(grid, wanted);
     const auto take = [&](const std::vector<Vec3f>& from, std::vector<Vec3f>& to) {
         for (std::size_t i = 0; !from.empty() && i < blends.size(); ++i)
             to.push_back(blends[i].mean<Vec3f>([&](std::size_t point) { return from[point]; }));
@@ -208,6 +213,13 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
     }
     for (const GridAttribute& attribute : grid.attributes)
         attributes.push_back(blended(attribute, blends, point_size));
+}
+
+RefinedPoints::RefinedPoints(const Grid& grid, std::span<const RefinedPoint> wanted)
+    : points(painted_points(wanted.size())) {
+    const std::vector<Blend> blends = blends_at(grid, wanted);
+    for (const GridAttribute& attribute : grid.attributes)
+        attributes.push_back(blended(attribute, blends, 1.0f));
 }
 
 }  // namespace granita

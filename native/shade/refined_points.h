@@ -27,6 +27,13 @@ struct RefinedPoint {
     std::uint32_t place;  ///< in the sample sequences of the frame
 };
 
+/// [vertices] at a point.
+inline Vec3f between(const std::vector<Vec3f>& values, const RefinedPoint& at) {
+    Vec3f sum(0.0f);
+    for (std::size_t k = 0; k < 3; ++k) sum += at.weight[k] * values[at.vertex[k]];
+    return sum;
+}
+
 /// Light samples of such a point for each of a grid's: corners have those of their neighbours too,
 /// which interpolation averages.
 /// @param area that it stands for, in micropolygons.
@@ -51,6 +58,9 @@ struct RefinedPoints {
     RefinedPoints(const Grid& grid, const Scene& scene, const ShadingCamera& camera,
                   const MovingEye& eye, std::span<const RefinedPoint> wanted, bool timed,
                   float point_size);
+
+    /// painted_points(), with their attributes.
+    RefinedPoints(const Grid& grid, std::span<const RefinedPoint> wanted);
 };
 
 }  // namespace granita

@@ -44,6 +44,13 @@ ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
     return points;
 }
 
+ShadingPoints painted_points(std::size_t count) {
+    ShadingPoints points;
+    points.count = count;
+    points.backfacing.resize(count);
+    return points;
+}
+
 void show_other_side(ShadingPoints& points, std::span<const std::size_t> which) {
     for (const std::size_t i : which) {
         points.normal[i] = -points.normal[i];

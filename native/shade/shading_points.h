@@ -18,6 +18,9 @@ inline GeometryKind kind_of(const Grid& grid, const Scene& scene) {
 /// A grid's shading points in shading space.
 ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera);
 
+/// All that is read of them by programs that are still.
+ShadingPoints painted_points(std::size_t count);
+
 /// Turns the other side of some points of a mesh to the viewer, who sees it for most of the time.
 void show_other_side(ShadingPoints& points, std::span<const std::size_t> which);
 

@@ -28,8 +28,10 @@ constexpr std::size_t kTurned = 8;
 struct ShadingSystem::Impl : PointShader {
     using PointShader::PointShader;
 
-    float sharpness(const Grid& grid) const {
-        return light_sample_step(light_sample_count(grid, scene, shutter));
+    float sharpness(Grid& grid) const {
+        if (grid.sharpness == 0.0f)
+            grid.sharpness = light_sample_step(light_sample_count(grid, scene, shutter));
+        return grid.sharpness;
     }
     float edge_share(const Grid& grid) const {
         return light_sample_step(edge_light_sample_count(grid, scene));
@@ -68,6 +70,12 @@ struct ShadingSystem::Impl : PointShader {
         find_light(shading, out, {});
         shade(out, shading);
         return out;
+    }
+
+    RefinedPoints probed(const Grid& grid, std::span<const RefinedPoint> wanted,
+                         bool painted) const {
+        return painted ? RefinedPoints(grid, wanted)
+                       : RefinedPoints(grid, scene, camera, eye, wanted, moves, 1.0f);
     }
 
     /// Whether samples of the grid can be shaded by themselves.  Strands and spheres are drawn as
@@ -112,7 +120,8 @@ struct ShadingSystem::Impl : PointShader {
     }
 
     std::vector<Vec3f> opacity_at(Grid& grid, std::span<const RefinedPoint> wanted) const {
-        const RefinedPoints points(grid, scene, camera, eye, wanted, moves, 1.0f);
+        const RefinedPoints points =
+            probed(grid, wanted, material(grid.material).opacity_program.is_still());
         Grid out;
         out.material = grid.material;
         shade_opacity(out, input(grid, points));
@@ -136,6 +145,20 @@ struct ShadingSystem::Impl : PointShader {
             grid.found.gathered_world.clear();
         }
         if (probes.miss_looks(grid, there, looks, light != nullptr, thresholds.difference))
+            grid.unsettled = all_micropolygons(grid);
+    }
+    /// The same of what reflects nothing.
+    void find_sent_patterns(Grid& grid) const {
+        const SurfaceProgram& surface = material(grid.material).radiance;
+        if (!surface.is_patterned || surface.sources.reflects() ||
+            surface.sources.emission.is(Vec3f(0.0f)) || are_all_marked(grid.unsettled))
+            return;
+        const PatternProbes probes(grid, grid.unsettled);
+        const RefinedPoints found = probed(grid, probes.points, surface.program.is_still());
+        const SurfaceRun ran(surface, input(grid, found));
+        grid.broken_radiance |= ran.broken() > 0;
+        if (probes.miss(grid.radiance, ran.closure().emission, thresholds.difference,
+                        displayed_difference))
             grid.unsettled = all_micropolygons(grid);
     }
     /// How probes see lamps, by one sample each or by as many as corners take.
@@ -165,7 +188,8 @@ struct ShadingSystem::Impl : PointShader {
             are_all_marked(grid.unsettled_opacity))
             return;
         const PatternProbes probes(grid, grid.unsettled_opacity);
-        if (probes.miss_opacity(grid, opacity_at(grid, probes.points), thresholds.difference))
+        if (probes.miss(grid.opacity, opacity_at(grid, probes.points), thresholds.difference,
+                        opacity_difference))
             grid.unsettled_opacity = all_micropolygons(grid);
     }
 
@@ -206,7 +230,9 @@ struct ShadingSystem::Impl : PointShader {
     /// What the grid's points find by themselves; nullptr: it is left to samples.
     std::shared_ptr<GridShading> begin(Grid& grid, bool lit, float sharpness, float dense) const {
         auto begun = std::make_shared<GridShading>();
-        begun->points = shading_points(grid, camera);
+        begun->points = is_painted(grid.material) && channels.empty()
+                            ? painted_points(grid.point_count())
+                            : shading_points(grid, camera);
         ShadingPoints& points = begun->points;
         begun->wants_refining = can_refine(grid);
         const float narrow = edge_share(grid);
@@ -215,7 +241,7 @@ struct ShadingSystem::Impl : PointShader {
         points.share *= begun->fewer;
         points.round = kind_of(grid, scene) == GeometryKind::Curves;
         if (light && lit) light->lift(points, grid.key);
-        begun->at = paths_of(grid, points);
+        if (lit) begun->at = paths_of(grid, points);
         const bool looks = lit && (bounces || (below && moves && scatters(grid.material)));
         if (looks) {
             const std::vector<std::size_t> turned = look(grid, points, begun->at, narrow);
@@ -277,6 +303,7 @@ struct ShadingSystem::Impl : PointShader {
                            thresholds.noise / (begun.fewer * begun.fewer));
         mark(grid.unsettled, doubts.highlights);
         find_patterns(grid, doubts.looks);
+        if (!catches(grid)) find_sent_patterns(grid);
         if (!begun.at.moves() && grid.lifespan.is_whole())
             find_thin_shadows(grid, doubts.sights, difference);
     }
@@ -329,9 +356,11 @@ bool ShadingSystem::reaches_others(int material) const {
 
 void ShadingSystem::shade_opacity(Grid& grid) const {
     if (!opacity_varies(grid.material)) return;
-    const ShadingPoints points = shading_points(grid, m_impl->camera);
-    m_impl->shade_opacity(grid, m_impl->input(grid, points));
     const CompiledSurface& surface = m_impl->material(grid.material);
+    const ShadingPoints points = surface.opacity_program.is_still()
+                                     ? painted_points(grid.point_count())
+                                     : shading_points(grid, m_impl->camera);
+    m_impl->shade_opacity(grid, m_impl->input(grid, points));
     const bool refines = m_impl->can_refine(grid), has_lines = refines && surface.has_lines();
     const auto is_open = [](const Vec3f& opacity) { return opacity != Vec3f(1.0f); };
     grid.opacity_varies = has_lines || std::ranges::any_of(grid.opacity, is_open);

@@ -146,9 +146,21 @@ class MicropolygonCorners {
     std::vector<std::array<Corner, 4>> m_corners;
 };
 
+/// No less than what `show(value)` bends anywhere. `show`: of each component, growing with it.
+template <class Show>
+float most_bend(const std::vector<Vec3f>& values, const Show& show) {
+    Vec3f least(HUGE_VALF), most_of(-HUGE_VALF);
+    for (const Vec3f& v : values) {
+        least = glm::min(least, v);
+        most_of = glm::max(most_of, v);
+    }
+    return 2.0f * most(show(most_of) - show(least));
+}
+
 std::vector<std::uint8_t> unsettled_radiance(const Grid& grid, std::span<const float> noise,
                                              float threshold, float noise_threshold) {
-    if (are_equal(grid.radiance)) return {};
+    const bool is_sure = std::ranges::all_of(noise, [](float n) { return n == 0.0f; });
+    if (is_sure && most_bend(grid.radiance, shown_color) <= threshold) return {};
     const MicropolygonCorners corners(grid);
     const std::vector<Shown> shown = corners.shown(grid.radiance, shown_color);
     return corners.marked(shown, [&](const std::array<Corner, 4>& of, float bend) {
@@ -194,9 +206,10 @@ void mark(std::vector<std::uint8_t>& marks, const std::vector<std::uint8_t>& mor
 }
 
 std::vector<std::uint8_t> unsettled_opacity(const Grid& grid, float threshold) {
-    if (are_equal(grid.opacity)) return {};
+    const auto as_it_is = [](const Vec3f& opacity) { return opacity; };
+    if (most_bend(grid.opacity, as_it_is) <= threshold) return {};
     const MicropolygonCorners corners(grid);
-    const std::vector<Shown> shown = corners.shown(grid.opacity, [](const Vec3f& o) { return o; });
+    const std::vector<Shown> shown = corners.shown(grid.opacity, as_it_is);
     return corners.marked(
         shown, [&](const std::array<Corner, 4>&, float bend) { return bend > threshold; });
 }
