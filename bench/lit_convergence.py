@@ -29,9 +29,9 @@ SCENES = (
     "still", "moving", "turning", "sweep", "slide", "bolt", "bokeh", "wall", "leaves", "fur"
 )  # fmt: skip
 TARGETS = (0.01, 0.003, 0.001)
-NEVER = 1000.0  # a threshold that nothing reaches
+DEFAULT, NEVER = 0.1, 1000.0  # Shading Threshold: as it comes; one that nothing reaches
 KINDS = {
-    "Granita": {"engine": "GRANITA"},
+    "Granita": {"engine": "GRANITA", "shading_threshold": DEFAULT},
     "corners alone": {"engine": "GRANITA", "shading_threshold": NEVER},
     "Cycles": {"engine": "CYCLES"},
 }

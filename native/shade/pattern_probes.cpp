@@ -49,6 +49,21 @@ Vec3f head_on(const Lobe& lobe, std::size_t i) {
     return by_f0 ? lobe.weight[i] * lobe.f0[i] : lobe.weight[i];
 }
 
+/// Whether what a lamp sends is let `through` at a point otherwise than at all corners around it,
+/// by more than the threshold, displayed.
+bool is_other_shadow(const Grid& grid, const RefinedPoint& at, float through,
+                     const LampSight& corners, float threshold) {
+    Vec3f change(0.0f);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t corner = grid.point_at(at.vertex[k]);
+        const float more = through - corners.through[corner];
+        if (corners.through[corner] < 0.0f || !(std::abs(more) > kAnother)) return false;
+        change += at.weight[k] * more * corners.light[corner];
+    }
+    const Vec3f shown = between(grid.radiance, at);
+    return displayed_difference(shown, shown + change) > threshold;
+}
+
 struct Look {
     Vec3f color{0.0f}, bent{0.0f}, diffuse{0.0f}, sent{0.0f};
     float gloss = 0.0f;
@@ -160,28 +175,27 @@ bool PatternProbes::miss_looks(const Grid& grid, std::span<const float> looks,
     return false;
 }
 
+void PatternProbes::keep_shadowed(const Grid& grid, std::span<const LampSight> of_grid,
+                                  float threshold) {
+    std::erase_if(points, [&](const RefinedPoint& at) {
+        return std::ranges::none_of(of_grid, [&](const LampSight& corners) {
+            return is_other_shadow(grid, at, 0.0f, corners, threshold) ||
+                   is_other_shadow(grid, at, 1.0f, corners, threshold);
+        });
+    });
+}
+
 std::vector<RefinedPoint> PatternProbes::missed_shadows(const Grid& grid,
                                                         std::span<const LampSight> sights,
                                                         std::span<const LampSight> of_grid,
                                                         float threshold) const {
     std::vector<RefinedPoint> missed;
     for (std::size_t l = 0; l < sights.size(); ++l) {
-        const LampSight &there = sights[l], &corners = of_grid[l];
-        for (std::size_t i = 0; i < there.through.size() && missed.size() < kEnough; ++i) {
-            if (there.through[i] < 0.0f) continue;
-            bool is_told = true, is_other = true;
-            Vec3f change(0.0f);
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::size_t corner = grid.point_at(points[i].vertex[k]);
-                const float more = there.through[i] - corners.through[corner];
-                is_told = is_told && corners.through[corner] >= 0.0f;
-                is_other = is_other && std::abs(more) > kAnother;
-                change += points[i].weight[k] * more * corners.light[corner];
-            }
-            const Vec3f shown = between(grid.radiance, points[i]);
-            if (is_told && is_other && displayed_difference(shown, shown + change) > threshold)
+        const LampSight& there = sights[l];
+        for (std::size_t i = 0; i < there.through.size() && missed.size() < kEnough; ++i)
+            if (there.through[i] >= 0.0f &&
+                is_other_shadow(grid, points[i], there.through[i], of_grid[l], threshold))
                 missed.push_back(points[i]);
-        }
     }
     return missed;
 }

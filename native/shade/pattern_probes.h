@@ -60,6 +60,9 @@ class PatternProbes {
     /// light (Grid::found), as nothing near it reflects any: it is unknown there, or dark.
     bool hide_light(const Grid& grid, std::span<const float> looks) const;
 
+    /// Drops those at which no shadow could be missed, whatever is there.
+    /// @param of_grid as missed_shadows()'s.
+    void keep_shadowed(const Grid& grid, std::span<const LampSight> of_grid, float threshold);
     /// Those of the points, a few at most, that see a lamp otherwise than all corners around them,
     /// where its light would be missed, displayed.
     /// @param sights of the points, and of the grid's shading points.

@@ -174,7 +174,9 @@ struct ShadingSystem::Impl : PointShader {
     void find_thin_shadows(Grid& grid, std::span<const LampSight> sights, float threshold) const {
         if (sights.empty() || grid.shades_lattice() || are_all_marked(grid.unsettled)) return;
         const std::span<const std::uint8_t> marks(grid.unsettled);
-        const PatternProbes probes(grid, any_differs(sights) ? marks : marks.first(0));
+        PatternProbes probes(grid, any_differs(sights) ? marks : marks.first(0));
+        probes.keep_shadowed(grid, sights, threshold);
+        if (probes.points.empty()) return;
         const PatternProbes missed(
             probes.missed_shadows(grid, see(grid, probes, sights, true), sights, threshold));
         if (missed.points.empty()) return;
