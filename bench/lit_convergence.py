@@ -29,7 +29,7 @@ SCENES = (
     "still", "moving", "turning", "sweep", "slide", "bolt", "bokeh", "wall", "leaves", "fur"
 )  # fmt: skip
 TARGETS = (0.01, 0.003, 0.001)
-DEFAULT, NEVER = 0.1, 1000.0  # Shading Threshold: as it comes; one that nothing reaches
+DEFAULT, NEVER = 0.06, 1000.0  # Shading Threshold: as it comes; one that nothing reaches
 KINDS = {
     "Granita": {"engine": "GRANITA", "shading_threshold": DEFAULT},
     "corners alone": {"engine": "GRANITA", "shading_threshold": NEVER},

@@ -33,7 +33,7 @@ DEFAULTS = {
     "seed": 0,
     "animate_seed": False,
     "light_samples": 16,
-    "shading_threshold": 0.1,
+    "shading_threshold": 0.06,
     "film_exposure": 1.0,
     "bounces": "FULL",
 }

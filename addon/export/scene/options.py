@@ -33,7 +33,7 @@ _SETTINGS = (
     ("z_batch_size", 26),
     ("opacity_threshold", 0.996),
     ("light_samples", 16),
-    ("shading_threshold", 0.1),
+    ("shading_threshold", 0.06),
     ("device", "AUTO"),
     ("executor", "AUTO"),
 )

@@ -282,6 +282,8 @@ LitGrid DirectLight::Impl::lit_grid(const ShadingPoints& points, const SurfaceCl
     LitGrid grid{.radiance = radiance};
     grid.seed = sequence_seed(points, key, scene.options.seed);
     grid.placed = !points.places.empty();
+    grid.columns = points.columns;
+    grid.alone = points.alone || points.round;
     grid.in_medium = closure.lobes.front().kind == LobeKind::Phase;
     grid.depth = static_cast<int>(points.depth % ShadingPoints::kDepths);
     grid.receives = receives(key);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "shade/lights/power_heuristic.h"
@@ -34,11 +35,16 @@ std::vector<LampTurn> by_lamp(std::size_t lamp_count, std::vector<LampTurn> turn
 /// kind: they are asked about many samples at once.
 class LampSender {
   public:
+    using Answer = ShadowAgreement::Answer;
+    /// Of a point's samples: those that tell of the others, or these.
+    enum class Which { All, First, Others };
+
     LampSender(const LampSet& set, LitGrid& grid)
         : m_set(set), m_grid(grid), m_shadows(set.rays.get(), grid) {}
 
     /// In samples of that dimension.
-    void sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension);
+    void sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension,
+                Which which = Which::All);
     /// All points by one.
     void light(const std::vector<LitPoint>& points, std::size_t lamp, std::size_t first,
                LampSight* sight, const Progress& progress);
@@ -57,44 +63,60 @@ class LampSender {
         float density, sign;
     };
     static constexpr std::size_t kEnough = 256;
+    static constexpr int kFirst = 4;
 
     void color();
     /// `density`: of such samples, a solid angle; `sign`: as LitGrid::sign.
     void send(const LitPoint& point, const Lamp& lamp, const LitPlace& place,
-              const LightSample& sample, float density, float sign);
+              const LightSample& sample, float density, float sign, Answer answer = Answer::None);
+    /// Whether a part of the rays to a lamp may tell of all.
+    bool tells_shadows(const std::vector<LitPoint>& points, const Lamp& lamp) const {
+        return m_set.rays && lamp.casts_shadow() && !lamp.pattern() && !m_grid.placed &&
+               !m_grid.alone && !points.empty() &&
+               first_of(points.front().sample_count) < points.front().sample_count;
+    }
+    /// Of so many samples; a sequence's first four lie all over a lamp.
+    static int first_of(int count) {
+        return count < 2 * kFirst ? count : std::max(count / 4, kFirst);
+    }
 
     const LampSet& m_set;
     LitGrid& m_grid;
     ShadowQueue m_shadows;
+    std::optional<ShadowAgreement> m_agreement;  ///< of the lamp at hand
     std::vector<Uncolored> m_uncolored;
     std::vector<PatternSample> m_patterned;
 };
 
-void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension) {
+void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension,
+                        Which which) {
     const Lamp& lamp = m_set.lamps[turn.lamp];
     if (!m_uncolored.empty() && m_uncolored.front().lamp->pattern() != lamp.pattern()) color();
     const int wanted = m_set.samples_of(point, lamp);
     const int count = std::min(wanted, turn.rate.samples);
+    const int begin = which == Which::Others ? first_of(count) : 0;
+    const int end = which == Which::First ? first_of(count) : count;
+    if (begin == end) return;
+    const Answer answer = which == Which::Others ? m_agreement->answer(point.index) : Answer::None;
     // One sample of many tells all where nothing varies along its ray; one of one is any time's.
     const bool timed = m_set.changes(lamp) && (wanted > 1 || point.sample_count == 1);
     const SobolPoints sequence = m_grid.sequence(point, dimension, count);
     std::vector<Vec2f>& points = m_grid.lamp_points;
     std::vector<LightSample>& samples = m_grid.lamp_samples;
     points.clear();
-    for (int s = 0; s < count; ++s) points.push_back(sequence(static_cast<std::uint32_t>(s)));
+    for (int s = begin; s < end; ++s) points.push_back(sequence(static_cast<std::uint32_t>(s)));
     samples.resize(points.size());
-    if (!timed) {
-        if (!lamp.exists(point.at_frame.time)) return;
-        lamp.sample_all(point.at_frame.time, point.at_frame.p, points, samples);
-    }
-    for (int s = 0; s < count; ++s) {
-        const auto index = static_cast<std::size_t>(s);
+    if (!timed && !lamp.exists(point.at_frame.time)) return;
+    const bool stays = !timed || !(lamp.varies() || point.paths.moves());
+    if (stays) lamp.sample_all(point.at_frame.time, point.at_frame.p, points, samples);
+    for (int s = begin; s < end; ++s) {
+        const auto index = static_cast<std::size_t>(s - begin);
         LitPlace moved;
         const LitPlace& place = timed ? moved : point.at_frame;
         if (timed) {
             moved = m_set.place_at(point, sequence.third(static_cast<std::uint32_t>(s)));
             if (!lamp.exists(place.time)) continue;
-            lamp.sample(place.time, place.p, points[index], samples[index]);
+            if (!stays) lamp.sample(place.time, place.p, points[index], samples[index]);
         }
         const LightSample& sample = samples[index];
         if (!(sample.pdf > 0.0f)) continue;
@@ -103,7 +125,7 @@ void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t
         if (lamp.pattern())
             m_uncolored.push_back({&point, &lamp, place, sample, density, sign});
         else
-            send(point, lamp, place, sample, density, sign);
+            send(point, lamp, place, sample, density, sign, answer);
     }
     if (m_uncolored.size() >= kEnough) color();
 }
@@ -111,12 +133,23 @@ void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t
 void LampSender::light(const std::vector<LitPoint>& points, std::size_t lamp, std::size_t first,
                        LampSight* sight, const Progress& progress) {
     m_grid.sight = sight;
-    for (const LitPoint& point : points) {
-        progress.check();
-        const LampTurn turn{0, static_cast<std::uint32_t>(lamp), {1.0f, point.sample_count}};
-        sample(point, turn, first + lamp);
+    const auto light = [&](Which which) {
+        for (const LitPoint& point : points) {
+            progress.check();
+            const LampTurn turn{0, static_cast<std::uint32_t>(lamp), {1.0f, point.sample_count}};
+            sample(point, turn, first + lamp, which);
+        }
+        deliver();
+    };
+    if (tells_shadows(points, m_set.lamps[lamp])) {
+        m_agreement.emplace(m_grid.radiance.size(), m_grid.columns);
+        m_shadows.tell(&*m_agreement);
+        light(Which::First);
+        m_shadows.tell(nullptr);
+        light(Which::Others);
+    } else {
+        light(Which::All);
     }
-    deliver();
     m_grid.sight = nullptr;
 }
 
@@ -132,7 +165,7 @@ void LampSender::color() {
 }
 
 void LampSender::send(const LitPoint& point, const Lamp& lamp, const LitPlace& place,
-                      const LightSample& sample, float density, float sign) {
+                      const LightSample& sample, float density, float sign, Answer answer) {
     const BsdfValue bsdf = lamp.apply(point.bsdf.evaluate(sample.direction), m_grid.in_medium);
     const Vec3f value = total(bsdf) * sample.radiance;
     if (value == Vec3f(0.0f) || LampSet::is_beneath(lamp, point, place, sample.direction)) return;
@@ -141,7 +174,10 @@ void LampSender::send(const LitPoint& point, const Lamp& lamp, const LitPlace& p
     if (m_grid.sight && !lamp.is_hard() && sample.pdf * kPi * kSmall * kSmall < 1.0f)
         m_grid.sight->is_wide();
     const Vec3f radiance = sample.radiance / density;
-    if (m_set.rays && lamp.casts_shadow())
+    if (answer != Answer::None)
+        m_shadows.take(point.index, value / density, bsdf * radiance, sign,
+                       Vec3f(answer == Answer::Open ? 1.0f : 0.0f));
+    else if (m_set.rays && lamp.casts_shadow())
         m_shadows.send(point.index, value / density, bsdf, radiance, sign,
                        m_set.ray_to(point, place, lamp, sample, RayType::Shadow));
     else

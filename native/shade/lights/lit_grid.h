@@ -40,8 +40,10 @@ struct LitGrid {
     std::vector<LightSample> lamp_samples{};  ///< there
     std::vector<MetLamp> met_lamps{};         ///< whose nodes are still to be asked
     std::uint64_t seed = 0;
-    bool by_lobe = false;  ///< as WorldEvaluator::by_lobe
-    bool placed = false;   ///< points go by places in the frame's sequences, as samples do
+    bool by_lobe = false;     ///< as WorldEvaluator::by_lobe
+    std::size_t columns = 0;  ///< as ShadingPoints::columns
+    bool alone = false;       ///< points tell nothing of each other: also those of tubes
+    bool placed = false;      ///< points go by places in the frame's sequences, as samples do
     std::vector<SobolPoints> sequences = {};  ///< [dimensions] as far as they were asked for
     std::uint64_t receives = ~0ULL;           ///< Instance::receives
     int depth = 0;           ///< surfaces, and places in media, between it and the camera

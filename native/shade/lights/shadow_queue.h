@@ -6,6 +6,7 @@
 
 #include "shade/bsdf/bsdf.h"
 #include "shade/lights/lit_grid.h"
+#include "shade/lights/shadow_agreement.h"
 #include "shade/rays/ray_scene.h"
 
 namespace granita {
@@ -36,8 +37,15 @@ class ShadowQueue {
     void send(std::size_t point, const Vec3f& light, const BsdfValue& bsdf, const Vec3f& radiance,
               float sign) {
         deliver();
-        arrive({point, light, bsdf * radiance, sign}, Vec3f(1.0f));
+        take(point, light, bsdf * radiance, sign, Vec3f(1.0f));
     }
+    /// What is let `through` is known, and nothing for that point is on its way.
+    void take(std::size_t point, const Vec3f& light, const BsdfValue& parts, float sign,
+              const Vec3f& through) {
+        arrive({point, light, parts, sign}, through);
+    }
+    /// Tells it what rays find; nullptr: no more.
+    void tell(ShadowAgreement* agreement) { m_agreement = agreement; }
     /// All that is on its way.
     void deliver() {
         if (m_waiting.empty()) return;
@@ -60,6 +68,7 @@ class ShadowQueue {
     static constexpr std::size_t kMost = 128;
 
     void arrive(const Light& light, const Vec3f& seen) {
+        if (m_agreement) m_agreement->add(light.point, seen);
         if (m_grid.sight) m_grid.sight->add(light.point, m_grid.radiance.size(), light.light, seen);
         m_grid.add(light.point, light.light * seen, light.sign);
         m_grid.add_lamp(light.point, light.parts, seen);
@@ -67,6 +76,7 @@ class ShadowQueue {
 
     const RayScene* m_rays;
     LitGrid& m_grid;
+    ShadowAgreement* m_agreement = nullptr;
     std::vector<Light> m_waiting;
     std::vector<Ray> m_rays_waiting;
     std::vector<Vec3f> m_seen;
