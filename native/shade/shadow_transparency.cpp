@@ -21,7 +21,6 @@ struct Scratch {
 void fill_point(const RayHit& hit, ShadingPoints& points) {
     const bool back = glm::dot(hit.normal, hit.direction) > 0.0f;
     const Vec3f normal = back ? -hit.normal : hit.normal;
-    points.count = 1;
     points.p.assign(1, hit.p);
     points.normal.assign(1, normal);
     points.geometric_normal.assign(1, normal);
@@ -45,15 +44,18 @@ Vec3f shadow_transparency(const OpacityProgram& material, const Scene& scene, co
     if (const auto constant = constant_transparency(material)) return *constant;
     auto scratch = ObjectPool<std::unique_ptr<Scratch>>::take();
     if (!scratch) scratch = std::make_unique<Scratch>();
-    fill_point(hit, scratch->points);
+    scratch->points.count = 1;
+    if (!material.is_painted) fill_point(hit, scratch->points);
     scratch->attributes.resize(material.requests, 1);
     scratch->attributes.fill(0, hit, material.requests);
     ShadingInput input;
     input.points = &scratch->points;
     input.attributes = &scratch->attributes.grid();
     input.instance = &scene.instances[hit.instance];
-    input.axes.world_from_object = hit.frame->world_from_object;
-    input.axes.object_from_world = hit.frame->object_from_world;
+    if (!material.is_painted) {
+        input.axes.world_from_object = hit.frame->world_from_object;
+        input.axes.object_from_world = hit.frame->object_from_world;
+    }
     input.ray_length = hit.distance;
     Run run = material.program.prepare(input, 1, std::move(scratch->memory));
     material.program.execute(run);
@@ -75,6 +77,9 @@ void tell_transparency(
     asked.constant = [surface](std::int32_t index) {
         return surface(index).is_told_apart ? std::nullopt
                                             : constant_transparency(surface(index).shadow);
+    };
+    asked.is_painted = [opacity](std::int32_t index, RayType ray) {
+        return opacity(index, ray).is_painted;
     };
     asked.transparency = [opacity = std::move(opacity), &scene](const RayHit& hit, RayType ray) {
         return shadow_transparency(opacity(hit.material, ray), scene, hit);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "math/sampling.h"
 #include "shade/lights/power_heuristic.h"
 #include "shade/lights/shadow_queue.h"
 
@@ -61,6 +62,7 @@ class LampSender {
         LitPlace place;
         LightSample sample;
         float density, sign;
+        Answer answer;
     };
     static constexpr std::size_t kEnough = 256;
     static constexpr int kFirst = 4;
@@ -68,14 +70,16 @@ class LampSender {
     void color();
     /// `density`: of such samples, a solid angle; `sign`: as LitGrid::sign.
     void send(const LitPoint& point, const Lamp& lamp, const LitPlace& place,
-              const LightSample& sample, float density, float sign, Answer answer = Answer::None);
+              const LightSample& sample, float density, float sign, Answer answer);
     /// Whether a part of the rays to a lamp may tell of all.
     bool tells_shadows(const std::vector<LitPoint>& points, const Lamp& lamp) const {
-        return m_set.rays && lamp.casts_shadow() && !lamp.pattern() && !m_grid.placed &&
-               !m_grid.alone && !points.empty() &&
+        return m_set.rays && lamp.casts_shadow() && !m_grid.placed && !m_grid.alone &&
+               !points.empty() &&
                first_of(points.front().sample_count) < points.front().sample_count;
     }
-    /// Of so many samples; a sequence's first four lie all over a lamp.
+    /// Fills m_taken.
+    void take(const LitPoint& point, int count, Which which);
+    /// Of so many samples.
     static int first_of(int count) {
         return count < 2 * kFirst ? count : std::max(count / 4, kFirst);
     }
@@ -84,6 +88,7 @@ class LampSender {
     LitGrid& m_grid;
     ShadowQueue m_shadows;
     std::optional<ShadowAgreement> m_agreement;  ///< of the lamp at hand
+    std::vector<int> m_taken;                    ///< of the samples of the point at hand
     std::vector<Uncolored> m_uncolored;
     std::vector<PatternSample> m_patterned;
 };
@@ -94,9 +99,8 @@ void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t
     if (!m_uncolored.empty() && m_uncolored.front().lamp->pattern() != lamp.pattern()) color();
     const int wanted = m_set.samples_of(point, lamp);
     const int count = std::min(wanted, turn.rate.samples);
-    const int begin = which == Which::Others ? first_of(count) : 0;
-    const int end = which == Which::First ? first_of(count) : count;
-    if (begin == end) return;
+    take(point, count, which);
+    if (m_taken.empty()) return;
     const Answer answer = which == Which::Others ? m_agreement->answer(point.index) : Answer::None;
     // One sample of many tells all where nothing varies along its ray; one of one is any time's.
     const bool timed = m_set.changes(lamp) && (wanted > 1 || point.sample_count == 1);
@@ -104,13 +108,13 @@ void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t
     std::vector<Vec2f>& points = m_grid.lamp_points;
     std::vector<LightSample>& samples = m_grid.lamp_samples;
     points.clear();
-    for (int s = begin; s < end; ++s) points.push_back(sequence(static_cast<std::uint32_t>(s)));
+    for (const int s : m_taken) points.push_back(sequence(static_cast<std::uint32_t>(s)));
     samples.resize(points.size());
     if (!timed && !lamp.exists(point.at_frame.time)) return;
     const bool stays = !timed || !(lamp.varies() || point.paths.moves());
     if (stays) lamp.sample_all(point.at_frame.time, point.at_frame.p, points, samples);
-    for (int s = begin; s < end; ++s) {
-        const auto index = static_cast<std::size_t>(s - begin);
+    for (std::size_t index = 0; index < m_taken.size(); ++index) {
+        const int s = m_taken[index];
         LitPlace moved;
         const LitPlace& place = timed ? moved : point.at_frame;
         if (timed) {
@@ -123,11 +127,24 @@ void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t
         const float density = static_cast<float>(count) * sample.pdf * turn.rate.mean;
         const float sign = turn.sign != 0.0f ? turn.sign : LitGrid::sign(s, count);
         if (lamp.pattern())
-            m_uncolored.push_back({&point, &lamp, place, sample, density, sign});
+            m_uncolored.push_back({&point, &lamp, place, sample, density, sign, answer});
         else
             send(point, lamp, place, sample, density, sign, answer);
     }
     if (m_uncolored.size() >= kEnough) color();
+}
+
+/// A point's first samples are one of the equal runs of its sequence, each all over the lamp: if
+/// all points took the same run, a part of the lamp would be seen by none.
+void LampSender::take(const LitPoint& point, int count, Which which) {
+    m_taken.clear();
+    const int first = first_of(count);
+    const auto runs = static_cast<std::uint64_t>(count / std::max(first, 1));
+    const int begin = runs < 2 ? 0 : first * static_cast<int>(mix_bits(point.place) % runs);
+    for (int s = 0; s < count; ++s) {
+        const bool is_first = s >= begin && s < begin + first;
+        if (which == Which::All || is_first == (which == Which::First)) m_taken.push_back(s);
+    }
 }
 
 void LampSender::light(const std::vector<LitPoint>& points, std::size_t lamp, std::size_t first,
@@ -160,7 +177,7 @@ void LampSender::color() {
         m_patterned.push_back(one.lamp->patterned(one.place.time, one.place.p, one.sample));
     m_uncolored.front().lamp->pattern()->color(m_patterned);
     for (const Uncolored& one : m_uncolored)
-        send(*one.point, *one.lamp, one.place, one.sample, one.density, one.sign);
+        send(*one.point, *one.lamp, one.place, one.sample, one.density, one.sign, one.answer);
     m_uncolored.clear();
 }
 

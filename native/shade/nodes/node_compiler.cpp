@@ -279,6 +279,7 @@ Program opacity_program(const ProgramBuilder& builder, const VectorSource& trans
 
 OpacityProgram passing_program(const ProgramBuilder& builder, const VectorSource& transparency) {
     OpacityProgram passing{{}, opacity_program(builder, transparency), transparency};
+    passing.is_painted = passing.program.is_still();
     passing.requests = used_requests(builder.requests, {&passing.program});
     return passing;
 }

@@ -62,6 +62,7 @@ struct OpacityProgram {
     std::vector<AttributeRequest> requests;
     Program program;
     VectorSource transparency;
+    bool is_painted = false;  ///< by attributes alone: of a place nothing else is read
 };
 
 struct CompiledSurface {

@@ -21,8 +21,10 @@ struct RayMaterials {
     std::function<bool(std::int32_t material)> is_transparent;
     /// What passes the surface: 0 = opaque, 1 = nothing there.
     std::function<Vec3f(const RayHit&, RayType)> transparency;
-    /// The same of a material where it is one everywhere, to all types: places are then not looked
-    /// up.
+    /// Whether it goes by attributes alone: such hits need neither frame nor normal.
+    std::function<bool(std::int32_t material, RayType)> is_painted = nullptr;
+    /// What passes of a material where it is one everywhere, to all types: places are then not
+    /// looked up.
     std::function<std::optional<Vec3f>(std::int32_t material)> constant = nullptr;
     /// What it sends to all sides and from everywhere, so that its meshes are lamps; nullopt: they
     /// are, but it varies; 0: they are none.

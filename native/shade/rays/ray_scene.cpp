@@ -65,6 +65,8 @@ Vec3f RayScene::Impl::transparency(const ShadowContext& context, const RTCRay& r
     RayHit hit;
     locate(ray, at, instance.index, context.start, context.direction, hit);
     if (!materials.is_transparent(hit.material)) return Vec3f(0.0f);
+    if (materials.is_painted && materials.is_painted(hit.material, context.rays->type))
+        return materials.transparency(hit, context.rays->type);
     hit.frame = instance.still ? &*instance.still : nullptr;
     std::optional<RayFrame> moved;
     if (!hit.frame) hit.frame = &moved.emplace(frame_at(hit.instance, ray.time));
