@@ -157,3 +157,32 @@ def test_the_penumbra_of_a_rectangle_by_a_straight_edge(executor):
         return row(snapshot)
 
     assert columns(True) / columns(False) == pytest.approx(seen_part(22.0), abs=EDGE / 5)
+
+
+ANGLE = 0.4  # of a sun straight above, radians across
+
+
+def seen_of_sun(edge, x):
+    """Part of its disc that a half plane up to `edge` leaves at `x` on the floor, ten below."""
+    u = np.clip((x - edge) / (10.0 * np.tan(ANGLE / 2)), -1.0, 1.0)
+    return 0.5 + (u * np.sqrt(1.0 - u * u) + np.arcsin(u)) / np.pi
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+@pytest.mark.parametrize("ends", [(22.3, 22.3), (20.0, 24.0), (12.0, 32.0)])
+def test_the_penumbra_of_a_wide_sun_by_an_edge_that_moves(executor, ends):
+    """Standing, by as much as the penumbra is wide, and by five times that: both widen it."""
+
+    def columns(blocked):
+        snapshot = stage(executor)
+        snapshot["lights"][0]["sun_angle"] = ANGLE
+        floor(snapshot)
+        if blocked:
+            caster(snapshot, -300, 0.0, **moves(*ends))
+        return row(snapshot)
+
+    x = np.arange(SIZE[0] * 16) / 16 + 1 / 32
+    edges = np.linspace(*ends, 401)
+    expected = seen_of_sun(edges[:, None], x).mean(axis=0).reshape(-1, 16).mean(axis=1)
+    # Directions of the disc's rim fall on the floor with a cosine of .98.
+    assert columns(True) / columns(False) == pytest.approx(expected, abs=EDGE / 4)
