@@ -20,9 +20,9 @@ constexpr double kOfRough = 10.0;
 /// Part of the points that is seen above which nothing much hides a grid.
 constexpr double kNearlyAll = 0.9;
 /// Of unit normals, how far those of a micropolygon's two diagonals differ, in the mean, over the
-/// shading threshold (.1).  Of what a noise displaces (.2 to .4) corners settle a tenth of the
+/// shading threshold (.06).  Of what a noise displaces (.2 to .4) corners settle a tenth of the
 /// micropolygons, of smooth waves (.02) all.
-constexpr double kRough = 1.5;
+constexpr double kRough = 2.5;
 
 /// As thresholds of displayed color fall with samples.
 double least_rough(const Options& options) {

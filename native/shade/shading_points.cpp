@@ -47,7 +47,6 @@ ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
 ShadingPoints painted_points(std::size_t count) {
     ShadingPoints points;
     points.count = count;
-    points.backfacing.resize(count);
     return points;
 }
 

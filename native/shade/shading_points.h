@@ -18,7 +18,7 @@ inline GeometryKind kind_of(const Grid& grid, const Scene& scene) {
 /// A grid's shading points in shading space.
 ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera);
 
-/// All that is read of them by programs that are still.
+/// Of which nothing is read but how many they are: by programs that are still.
 ShadingPoints painted_points(std::size_t count);
 
 /// Turns the other side of some points of a mesh to the viewer, who sees it for most of the time.

@@ -92,8 +92,7 @@ struct ShadingSystem::Impl : PointShader {
     /// Whether some of the grid's micropolygons look otherwise at some time of the shutter than
     /// when it opens: all else being equal, light samples too.
     bool changes_in_time(Grid& grid) const {
-        if (!moves || (!light && (are_equal(grid.radiance) ||
-                                  material(grid.material).radiance.program.is_still())))
+        if (!moves || is_painted(grid.material) || (!light && are_equal(grid.radiance)))
             return false;
         const TimeProbes probes(grid, scene.options.frame_time);
         const Grid found = refine(grid, probes.points, 1.0f);

@@ -159,8 +159,10 @@ float most_bend(const std::vector<Vec3f>& values, const Show& show) {
 
 std::vector<std::uint8_t> unsettled_radiance(const Grid& grid, std::span<const float> noise,
                                              float threshold, float noise_threshold) {
-    const bool is_sure = std::ranges::all_of(noise, [](float n) { return n == 0.0f; });
-    if (is_sure && most_bend(grid.radiance, shown_color) <= threshold) return {};
+    if (are_equal(grid.radiance)) return {};
+    const bool noise_marks = noise_threshold < HUGE_VALF &&
+                             std::ranges::any_of(noise, [](float n) { return n != 0.0f; });
+    if (!noise_marks && most_bend(grid.radiance, shown_color) <= threshold) return {};
     const MicropolygonCorners corners(grid);
     const std::vector<Shown> shown = corners.shown(grid.radiance, shown_color);
     return corners.marked(shown, [&](const std::array<Corner, 4>& of, float bend) {

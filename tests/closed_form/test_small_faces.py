@@ -228,7 +228,8 @@ def test_bent_faces_do_not_shadow_themselves(size):
 
     lit = render(False)
     assert lit[..., 0].min() > 0.1
-    assert np.array_equal(render(True), lit)
+    # A ray of sixteen is 6 % of a corner's light; those that agree are added in another order.
+    assert np.allclose(render(True), lit, rtol=1e-6, atol=0)
 
 
 @pytest.mark.parametrize("shape", ["quads", "triangles", "bent quads"])

@@ -242,8 +242,10 @@ class Sharing {
     /// faces that meet there, about half of a ball's, have the same neighbours.
     std::vector<std::uint32_t> first_alike() const {
         const auto look = [&](std::uint32_t i) {
-            const Vec3f &p = m_points.p[i], &n = m_points.normal[i];
-            return std::tuple(p.x, p.y, p.z, n.x, n.y, n.z, m_own.side[i]);
+            const auto of = [i](const NoisyPoints::Columns& columns) {
+                return std::array{columns[0][i], columns[1][i], columns[2][i]};
+            };
+            return std::tuple(of(m_own.p), of(m_own.normal), of(m_own.told), m_own.side[i]);
         };
         std::vector<std::uint32_t> first(m_points.count), order;
         for_sorted_runs(order, m_points.count, look, [&](std::span<const std::uint32_t> alike) {

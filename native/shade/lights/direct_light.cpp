@@ -283,7 +283,7 @@ LitGrid DirectLight::Impl::lit_grid(const ShadingPoints& points, const SurfaceCl
     grid.seed = sequence_seed(points, key, scene.options.seed);
     grid.placed = !points.places.empty();
     grid.columns = points.columns;
-    grid.alone = points.alone || points.round;
+    grid.alone = points.alone || points.round || points.whole_faces;
     grid.in_medium = closure.lobes.front().kind == LobeKind::Phase;
     grid.depth = static_cast<int>(points.depth % ShadingPoints::kDepths);
     grid.receives = receives(key);

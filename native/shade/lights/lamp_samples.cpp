@@ -44,8 +44,9 @@ class LampSender {
         : m_set(set), m_grid(grid), m_shadows(set.rays.get(), grid) {}
 
     /// In samples of that dimension.
-    void sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension,
-                Which which = Which::All);
+    void sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension) {
+        sample(point, turn, dimension, Which::All, m_set.samples_of(point, m_set.lamps[turn.lamp]));
+    }
     /// All points by one.
     void light(const std::vector<LitPoint>& points, std::size_t lamp, std::size_t first,
                LampSight* sight, const Progress& progress);
@@ -73,12 +74,17 @@ class LampSender {
               const LightSample& sample, float density, float sign, Answer answer);
     /// Whether a part of the rays to a lamp may tell of all.
     bool tells_shadows(const std::vector<LitPoint>& points, const Lamp& lamp) const {
+        const auto has_others = [](const LitPoint& point) {
+            return first_of(point.sample_count) < point.sample_count;
+        };
         return m_set.rays && lamp.casts_shadow() && !m_grid.placed && !m_grid.alone &&
-               !points.empty() &&
-               first_of(points.front().sample_count) < points.front().sample_count;
+               (!lamp.is_hard() || m_set.changes(lamp)) && std::ranges::any_of(points, has_others);
     }
+    /// `wanted`: LampSet::samples_of().
+    void sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension, Which which,
+                int wanted);
     /// Fills m_taken.
-    void take(const LitPoint& point, int count, Which which);
+    void take(const LitPoint& point, const LampTurn& turn, int count, Which which);
     /// Of so many samples.
     static int first_of(int count) {
         return count < 2 * kFirst ? count : std::max(count / 4, kFirst);
@@ -88,20 +94,21 @@ class LampSender {
     LitGrid& m_grid;
     ShadowQueue m_shadows;
     std::optional<ShadowAgreement> m_agreement;  ///< of the lamp at hand
+    std::vector<int> m_wanted;                   ///< [points] of the lamp at hand
     std::vector<int> m_taken;                    ///< of the samples of the point at hand
     std::vector<Uncolored> m_uncolored;
     std::vector<PatternSample> m_patterned;
 };
 
 void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension,
-                        Which which) {
+                        Which which, int wanted) {
     const Lamp& lamp = m_set.lamps[turn.lamp];
     if (!m_uncolored.empty() && m_uncolored.front().lamp->pattern() != lamp.pattern()) color();
-    const int wanted = m_set.samples_of(point, lamp);
     const int count = std::min(wanted, turn.rate.samples);
-    take(point, count, which);
+    take(point, turn, count, which);
     if (m_taken.empty()) return;
     const Answer answer = which == Which::Others ? m_agreement->answer(point.index) : Answer::None;
+    if (answer == Answer::Closed && !m_grid.parts && !m_grid.sight) return;
     // One sample of many tells all where nothing varies along its ray; one of one is any time's.
     const bool timed = m_set.changes(lamp) && (wanted > 1 || point.sample_count == 1);
     const SobolPoints sequence = m_grid.sequence(point, dimension, count);
@@ -134,13 +141,16 @@ void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t
     if (m_uncolored.size() >= kEnough) color();
 }
 
-/// A point's first samples are one of the equal runs of its sequence, each all over the lamp: if
-/// all points took the same run, a part of the lamp would be seen by none.
-void LampSender::take(const LitPoint& point, int count, Which which) {
+/// A point's first samples are one of the runs of its sequence, each all over the lamp where counts
+/// are powers of two: if all points took the same run, a part of the lamp would be seen by none.
+void LampSender::take(const LitPoint& point, const LampTurn& turn, int count, Which which) {
     m_taken.clear();
     const int first = first_of(count);
     const auto runs = static_cast<std::uint64_t>(count / std::max(first, 1));
-    const int begin = runs < 2 ? 0 : first * static_cast<int>(mix_bits(point.place) % runs);
+    const int begin =
+        runs < 2 ? 0
+                 : first * static_cast<int>(
+                               mix_bits(m_grid.seed + turn.lamp + mix_bits(point.place)) % runs);
     for (int s = 0; s < count; ++s) {
         const bool is_first = s >= begin && s < begin + first;
         if (which == Which::All || is_first == (which == Which::First)) m_taken.push_back(s);
@@ -150,11 +160,14 @@ void LampSender::take(const LitPoint& point, int count, Which which) {
 void LampSender::light(const std::vector<LitPoint>& points, std::size_t lamp, std::size_t first,
                        LampSight* sight, const Progress& progress) {
     m_grid.sight = sight;
+    m_wanted.resize(points.size());
     const auto light = [&](Which which) {
-        for (const LitPoint& point : points) {
+        for (std::size_t k = 0; k < points.size(); ++k) {
             progress.check();
+            const LitPoint& point = points[k];
             const LampTurn turn{0, static_cast<std::uint32_t>(lamp), {1.0f, point.sample_count}};
-            sample(point, turn, first + lamp, which);
+            if (which != Which::Others) m_wanted[k] = m_set.samples_of(point, m_set.lamps[lamp]);
+            sample(point, turn, first + lamp, which, m_wanted[k]);
         }
         deliver();
     };
@@ -163,6 +176,7 @@ void LampSender::light(const std::vector<LitPoint>& points, std::size_t lamp, st
         m_shadows.tell(&*m_agreement);
         light(Which::First);
         m_shadows.tell(nullptr);
+        m_agreement->share();
         light(Which::Others);
     } else {
         light(Which::All);
@@ -192,8 +206,8 @@ void LampSender::send(const LitPoint& point, const Lamp& lamp, const LitPlace& p
         m_grid.sight->is_wide();
     const Vec3f radiance = sample.radiance / density;
     if (answer != Answer::None)
-        m_shadows.take(point.index, value / density, bsdf * radiance, sign,
-                       Vec3f(answer == Answer::Open ? 1.0f : 0.0f));
+        m_shadows.take(point.index, value / density, m_grid.parts ? bsdf * radiance : BsdfValue(),
+                       sign, Vec3f(answer == Answer::Open ? 1.0f : 0.0f));
     else if (m_set.rays && lamp.casts_shadow())
         m_shadows.send(point.index, value / density, bsdf, radiance, sign,
                        m_set.ray_to(point, place, lamp, sample, RayType::Shadow));

@@ -42,7 +42,7 @@ struct LitGrid {
     std::uint64_t seed = 0;
     bool by_lobe = false;     ///< as WorldEvaluator::by_lobe
     std::size_t columns = 0;  ///< as ShadingPoints::columns
-    bool alone = false;       ///< points tell nothing of each other: also those of tubes
+    bool alone = false;       ///< points tell nothing of each other: of tubes and whole faces too
     bool placed = false;      ///< points go by places in the frame's sequences, as samples do
     std::vector<SobolPoints> sequences = {};  ///< [dimensions] as far as they were asked for
     std::uint64_t receives = ~0ULL;           ///< Instance::receives

@@ -11,9 +11,9 @@
 
 namespace granita {
 
-/// Light on its way from one lamp to the points of a grid: it arrives in the order in which it was
-/// sent, but its rays are traced many at a time, as neighbouring points' rays to one lamp go the
-/// same way.
+/// Light on its way from one lamp to the points of a grid: to each it arrives in the order in which
+/// it was sent, but its rays are traced many at a time, as neighbouring points' rays to one lamp go
+/// the same way.
 class ShadowQueue {
   public:
     /// `rays` nullptr: nothing casts shadows.
