@@ -161,6 +161,8 @@ def seconds_to(target, points):
     for (s0, e0), (s1, e1) in zip(points, points[1:], strict=False):
         if e1 <= target:
             return s0 * (s1 / s0) ** (math.log(target / e0) / math.log(e1 / e0)), ""
+    if len(points) < 2:
+        return None, ""
     (s0, e0), (s1, e1) = points[-2:]
     slope = math.log(e1 / e0) / math.log(s1 / s0)
     if slope > -0.2:

@@ -4,7 +4,7 @@
     ./dev bench lit_convergence [--scenes still moving ...] [--samples 4 16 64 256] [--reference 1024] [--width 960]
                                 [--sheets FOLDER]
 
-One thread each, in turns; equal filter and shutter, no bounces, nothing but Samples touched.  Errors are against the
+One thread each, in turns; equal filter and shutter, no bounces, of Granita nothing but Samples touched.  Errors are against the
 mean of two of Cycles' pictures of half the reference's samples, which share none, so that the reference's own error is
 known: what is independent of it adds up by squares, and "RMSE" is without it.  Seconds are those of the processor.
 Prints tables, writes bench/results/lit_convergence.json, where what is not measured this time keeps its rows, and draws
@@ -29,7 +29,7 @@ SCENES = (
     "still", "moving", "turning", "sweep", "slide", "bolt", "bokeh", "wall", "leaves", "fur"
 )  # fmt: skip
 TARGETS = (0.01, 0.003, 0.001)
-DEFAULT, NEVER = 0.06, 1000.0  # Shading Threshold: as it comes; one that nothing reaches
+DEFAULT, NEVER = 0.06, 1000.0  # Shading Threshold: the add-on's; one that nothing reaches
 KINDS = {
     "Granita": {"engine": "GRANITA", "shading_threshold": DEFAULT},
     "corners alone": {"engine": "GRANITA", "shading_threshold": NEVER},
@@ -134,7 +134,8 @@ def draw(rows):
         }
         if of:
             panels.append(plot.Panel(scene, curves, TARGETS))
-    plot.save(ROOT / "docs" / "lit_convergence.svg", panels, "seconds", "RMSE")
+    if panels:
+        plot.save(ROOT / "docs" / "lit_convergence.svg", panels, "seconds", "RMSE")
 
 
 def identity(row):
@@ -149,6 +150,8 @@ def main():
     parser.add_argument("--width", type=int, default=480)
     parser.add_argument("--sheets", type=Path)
     options = parser.parse_args()
+    if options.sheets and not set(SHEET_SAMPLES) <= set(options.samples):
+        parser.error(f"sheets show {SHEET_SAMPLES} samples")
     file = RESULTS / "lit_convergence.json"
     rows = json.loads(file.read_text()) if file.exists() else []
     for scene in options.scenes:
