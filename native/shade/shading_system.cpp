@@ -91,10 +91,16 @@ struct ShadingSystem::Impl : PointShader {
 
     /// Whether some of the grid's micropolygons look otherwise at some time of the shutter than
     /// when it opens: all else being equal, light samples too.
-    bool changes_in_time(Grid& grid) const {
+    bool changes_in_time(Grid& grid, const GridShading& begun) const {
         if (!moves || is_painted(grid.material) || (!light && are_equal(grid.radiance)))
             return false;
-        const TimeProbes probes(grid, scene.options.frame_time);
+        if (changes_at(grid, TimeProbes(grid, scene.options.frame_time))) return true;
+        // Of what stands still each sample is right at any time.
+        return begun.at.moves() && !grid.shades_lattice() &&
+               changes_at(grid, TimeProbes(grid, begun.doubts.sights));
+    }
+    bool changes_at(Grid& grid, const TimeProbes& probes) const {
+        if (probes.points.empty()) return false;
         const Grid found = refine(grid, probes.points, 1.0f);
         grid.broken_radiance |= found.broken_radiance || found.broken_opacity;
         return probes.any_changes(found.radiance, thresholds.difference, displayed_difference);
@@ -296,7 +302,7 @@ struct ShadingSystem::Impl : PointShader {
             return;
         }
         const float difference = thresholds.difference / (begun.sharpness * begun.sharpness);
-        if (begun.turns || material(grid.material).has_lines() || changes_in_time(grid) ||
+        if (begun.turns || material(grid.material).has_lines() || changes_in_time(grid, begun) ||
             (doubts.may_pass && highlights_pass(grid)))
             grid.unsettled = all_micropolygons(grid);
         else

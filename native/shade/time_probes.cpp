@@ -10,6 +10,8 @@ namespace {
 
 /// Probes of a small grid that tell chance from what all of its samples are wrong by.
 constexpr int kFewest = 3;
+/// Probes of those that corners see an edge in.
+constexpr std::size_t kAtEdges = 4;
 /// Parts of the time that a grid is there for.  Not even ones, and not the ends alone: a highlight
 /// that sweeps past in the middle looks the same before and after.
 constexpr float kTimes[] = {0.0f, 0.31f, 0.57f, 1.0f};
@@ -27,19 +29,34 @@ constexpr float kOffMiddle = 0.1f;
 
 TimeProbes::TimeProbes(const Grid& grid, float frame_time, int step)
     : m_asks_corners(grid.micropolygon_count() > 1 && std::abs(frame_time - 0.5f) > kOffMiddle) {
-    const float open = std::max(grid.lifespan.open, 0.0f);
-    const float exposed = std::min(grid.lifespan.close, 1.0f) - open;
     const int count = grid.micropolygon_count();
     if (m_asks_corners) step = std::clamp(count / kFewest, 1, step);
-    for (int m = step / 2 % count; m < count; m += step) {
-        const Grid::Corners c = grid.corners(m);
-        const auto at = [](int v) { return static_cast<std::uint32_t>(v); };
-        const auto add = [&](float time) {
-            points.push_back({{at(c.v0), at(c.v1), at(c.v2)}, {0.5f, 0.0f, 0.5f}, time, at(m)});
-        };
-        for (const float part : kTimes) add(open + part * exposed);
-        if (m_asks_corners) add(kAnyTime);
+    for (int m = step / 2 % count; m < count; m += step) ask(grid, m);
+}
+
+TimeProbes::TimeProbes(const Grid& grid, std::span<const LampSight> sights) {
+    std::vector<int> edges;
+    for (int m = 0; m < grid.micropolygon_count(); ++m) {
+        const std::size_t corner = grid.point_at(static_cast<std::size_t>(grid.corners(m).v0));
+        const auto is_edge = [corner](const LampSight& sight) { return sight.differs(corner); };
+        if (std::ranges::any_of(sights, is_edge)) edges.push_back(m);
     }
+    const std::size_t wanted = std::min(edges.size(), kAtEdges);
+    for (std::size_t k = 0; k < wanted; ++k)
+        ask(grid, edges[(2 * k + 1) * edges.size() / (2 * wanted)]);
+}
+
+void TimeProbes::ask(const Grid& grid, int micropolygon) {
+    const float open = std::max(grid.lifespan.open, 0.0f);
+    const float exposed = std::min(grid.lifespan.close, 1.0f) - open;
+    const Grid::Corners c = grid.corners(micropolygon);
+    const auto at = [](int v) { return static_cast<std::uint32_t>(v); };
+    const auto add = [&](float time) {
+        points.push_back(
+            {{at(c.v0), at(c.v1), at(c.v2)}, {0.5f, 0.0f, 0.5f}, time, at(micropolygon)});
+    };
+    for (const float part : kTimes) add(open + part * exposed);
+    if (m_asks_corners) add(kAnyTime);
 }
 
 bool TimeProbes::any_changes(const std::vector<Vec3f>& values, float threshold,

@@ -2,8 +2,10 @@
 // Points of a grid at which it is asked whether anything changes within the shutter.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "shade/lights/lamp_sight.h"
 #include "shade/refined_points.h"
 
 namespace granita {
@@ -18,6 +20,9 @@ class TimeProbes {
     static constexpr int kOfLight = 29, kOfLooks = 3;
 
     TimeProbes(const Grid& grid, float frame_time, int step = kOfLight);
+    /// The same of some where a shadow's edge comes by, as corners have seen: those that are asked
+    /// blindly meet an edge in few of them by chance.
+    TimeProbes(const Grid& grid, std::span<const LampSight> sights);
 
     std::vector<RefinedPoint> points;
 
@@ -27,7 +32,9 @@ class TimeProbes {
                      float (*difference)(const Vec3f&, const Vec3f&)) const;
 
   private:
-    bool m_asks_corners;
+    void ask(const Grid& grid, int micropolygon);
+
+    bool m_asks_corners = false;
 };
 
 }  // namespace granita

@@ -38,6 +38,9 @@ class LampSight {
             before = kDiffers;
         light[point] += reflected;
     }
+    /// Whether some of a point's samples meet what others do not: a shadow's edge is there, at some
+    /// time.
+    bool differs(std::size_t point) const { return through[point] == kDiffers; }
     /// Too wide at some point, and so no lamp of these.
     void is_wide() { m_is_wide = true; }
     bool is_told() const { return !m_is_wide && !through.empty(); }
