@@ -10,6 +10,7 @@
 
 #include "base/stage_timer.h"
 #include "scene/camera_path.h"
+#include "scene/knot_time.h"
 #include "shade/bsdf/bsdf.h"
 #include "shade/lights/grid_samples.h"
 #include "shade/lights/lamp_choices.h"
@@ -108,6 +109,10 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
         std::ranges::move(shining.take_lamps(), std::back_inserter(lamps));
         if (!rays->empty()) set.set_casters(std::move(rays));
     }
+    // What moves past lamps and shadows that stand still is lit by its way, be it no caster itself.
+    set.varies = std::ranges::any_of(scene.instances, [&](const Instance& instance) {
+        return !is_static(instance.world_from_object) || scene.geometry_of(instance).knots > 1;
+    });
     anchors = anchors_of(lamps);
     set.set_lamps(std::move(lamps), progress);
 }

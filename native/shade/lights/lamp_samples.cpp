@@ -78,7 +78,7 @@ class LampSender {
             return first_of(point.sample_count) < point.sample_count;
         };
         return m_set.rays && lamp.casts_shadow() && !m_grid.placed && !m_grid.alone &&
-               (!lamp.is_hard() || m_set.changes(lamp)) && std::ranges::any_of(points, has_others);
+               (!lamp.is_hard() || m_set.varies) && std::ranges::any_of(points, has_others);
     }
     /// `wanted`: LampSet::samples_of().
     void sample(const LitPoint& point, const LampTurn& turn, std::size_t dimension, Which which,
@@ -110,7 +110,8 @@ void LampSender::sample(const LitPoint& point, const LampTurn& turn, std::size_t
     const Answer answer = which == Which::Others ? m_agreement->answer(point.index) : Answer::None;
     if (answer == Answer::Closed && !m_grid.parts && !m_grid.sight) return;
     // One sample of many tells all where nothing varies along its ray; one of one is any time's.
-    const bool timed = m_set.changes(lamp) && (wanted > 1 || point.sample_count == 1);
+    const bool timed =
+        (m_set.changes(lamp) || point.paths.moves()) && (wanted > 1 || point.sample_count == 1);
     const SobolPoints sequence = m_grid.sequence(point, dimension, count);
     std::vector<Vec2f>& points = m_grid.lamp_points;
     std::vector<LightSample>& samples = m_grid.lamp_samples;

@@ -109,8 +109,8 @@ int LampSet::samples_of(const LitPoint& point, const Lamp& lamp) const {
         !point.bsdf.can_see(center - point.at_frame.p, radius))
         return 0;
     if (!lamp.is_hard()) return point.sample_count;
-    if (!changes(lamp)) return 1;
     if (lamp.varies() || point.paths.moves()) return point.sample_count;
+    if (!changes(lamp)) return 1;
     const LitPlace& place = point.at_frame;
     LightSample sample;
     if (!lamp.sample(place.time, place.p, Vec2f(0.0f), sample)) return 0;

@@ -112,7 +112,7 @@ struct LampSet {
     std::unique_ptr<RayScene> rays;  ///< nullptr where nothing can cast a shadow
     bool parallel_view = false;      ///< beams that the camera sees do not widen
     bool casters_move = false;
-    bool varies = false;                    ///< casters or lamps do
+    bool varies = false;                    ///< casters or lamps do, or what they light moves
     int asked_by_all = Light::kAnyBounces;  ///< bounces after which every lamp is still asked
     float places = 0.0f;                    ///< lamps that are no surfaces
 };
