@@ -178,7 +178,7 @@ class GranitaSceneSettings(bpy.types.PropertyGroup):
         "Shading Threshold",
         "Bend of displayed colour between neighbouring shading points from which on samples are shaded by "
         "themselves, for 64 Samples; it shrinks as these grow. Smaller: edges of shadows, textures and cut-outs, "
-        "highlights and light that changes within the shutter are finer, and take longer. 0: wherever they differ at all; 1000: never",
+        "highlights and light that changes within the shutter are finer, and take longer. 0: wherever colour bends by more than its noise; 1000: never",
         0.06,
         (0.0, 1000.0),
         usual=(0.0, 1.0),

@@ -285,11 +285,30 @@ def leaves():
     return scene
 
 
+def ball_mesh(radius, across=32, rings=16):
+    """Blender's own has its faces in another order in each process, and hair grows by that."""
+    down, around = np.pi * np.arange(1, rings) / rings, 2 * np.pi * np.arange(across) / across
+    ring = np.stack([np.cos(around), np.sin(around), np.zeros(across)], -1)
+    points = np.sin(down)[:, None, None] * ring
+    points[..., 2] = np.cos(down)[:, None]
+    points = radius * np.vstack([points.reshape(-1, 3), [(0, 0, 1), (0, 0, -1)]])
+    k = np.arange(across)
+    quads = [
+        np.stack([i + k, i + across + k, i + across + (k + 1) % across, i + (k + 1) % across], -1)
+        for i in across * np.arange(rings - 2)
+    ]
+    last, pole = across * (rings - 2), len(points) - 2
+    caps = [(pole, a, (a + 1) % across) for a in range(across)]
+    caps += [(pole + 1, last + (a + 1) % across, last + a) for a in range(across)]
+    mesh = bpy.data.meshes.new("Ball")
+    mesh.from_pydata(points.tolist(), [], [*np.concatenate(quads).tolist(), *caps])
+    return mesh
+
+
 def fur():
     """4,000 hairs, 1.5 pixels wide, on a ball that turns under a sun and a large area lamp."""
     scene = empty(WIDTH)
-    bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=16, radius=2.5)
-    ball = bpy.context.object
+    ball = add(scene, "Ball", ball_mesh(2.5))
     ball.data.materials.append(material("Fur", "ShaderNodeBsdfDiffuse", (0.6, 0.35, 0.15)))
     ball.modifiers.new("Fur", "PARTICLE_SYSTEM")
     hair = ball.particle_systems[0].settings
