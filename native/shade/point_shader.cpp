@@ -33,7 +33,10 @@ void PointShader::find_light(PointShading& s, const Grid& grid, const PointPaths
     s.radiance.assign(points.count, Vec3f(0.0f));
     LeavingRays leaving;
     leaving.diffuse = grid.found.gathered.empty();
-    leaving.takes_world = bounces && scene.options.bounces.diffuse > 0 && surface.looks_ahead();
+    // Fast GI hides the world by what is near alone, be no bounce followed.
+    const Bounces& limits = scene.options.bounces;
+    leaving.takes_world =
+        bounces && (limits.diffuse > 0 || limits.occluded_from > 0) && surface.looks_ahead();
     if (light)
         s.radiance = light->reflect(points, s.closure, grid.key, asked, at,
                                     doubts ? &doubts->noise : nullptr, bounces ? &leaving : nullptr,

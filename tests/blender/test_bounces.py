@@ -379,6 +379,8 @@ def test_fast_gi_is_as_in_cycles(scene, render, method, bounces, distance, follo
     scene.world.light_settings.distance, scene.world.light_settings.ao_factor = distance, 0.8
     scene.cycles.use_fast_gi, scene.cycles.fast_gi_method = True, method
     scene.cycles.ao_bounces_render = bounces
+    # Samples that are shaded by themselves too: they saw farther than their grid where no bounce is followed (- 11 %).
+    scene.granita.shading_threshold = 0.0
     theirs, ours = render_bounced(scene, render, 512, bounces=followed)
     blocks = [p.reshape(6, 4, 6, 4, 3).mean(axis=(1, 3)) for p in (theirs, ours)]
     assert ours.mean(axis=(0, 1)) == pytest.approx(theirs.mean(axis=(0, 1)), rel=0.01)

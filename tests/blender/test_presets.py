@@ -13,8 +13,9 @@ from granita.ui.render_panels import GRANITA_RENDER_PT_sampling
 from granita.ui.sampling_presets import GRANITA_OT_sampling_preset_add as Add
 from granita.ui.sampling_presets import GRANITA_RENDER_PT_sampling_presets as Menu
 
-PREVIEW = {"samples": 8, "preview_samples": 16, "light_samples": 4, "dicing_rate": 2.0}
-DRAFT = {"samples": 4, "preview_samples": 8, "light_samples": 2, "dicing_rate": 4.0}
+COARSE = {"shading_threshold": 0.1}
+PREVIEW = {"samples": 8, "preview_samples": 16, "light_samples": 4, "dicing_rate": 2.0, **COARSE}
+DRAFT = {"samples": 4, "preview_samples": 8, "light_samples": 2, "dicing_rate": 4.0, **COARSE}
 NAMES = [value.removeprefix("settings.") for value in Add.preset_values]
 
 

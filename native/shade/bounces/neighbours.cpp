@@ -9,9 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <tuple>
 
-#include "base/sorted_runs.h"
 #include "shade/lights/leaving_rays.h"
 
 namespace granita {
@@ -26,10 +24,9 @@ using V = hn::Vec<decltype(kTag)>;
 constexpr std::size_t kRun = 64;
 /// Steps of the grid: what varies slower than that is found at every second point.
 constexpr float kSlowly = 6.0f;
-/// Points of other grids, or so: with a point's own about as many as lie around one of a lattice.
-/// Where a ball has its pole, or a cone its tip, its reach holds thousands.  With 512 errors were
-/// up to 4 % larger, with 64 those of four light samples up to 2 % larger.
-constexpr std::size_t kEnough = 192;
+/// Points of other grids, or so: twice as many as lie around one of a lattice.  Where a ball has
+/// its pole, or a cone its tip, a point's reach holds thousands.
+constexpr std::size_t kEnough = 512;
 /// Most that their normals are turned away, as 1 - cosine.
 constexpr float kBend = 0.25f;
 /// The same of points between which others are interpolated: not across creases.
@@ -211,12 +208,7 @@ class Sharing {
         const std::size_t count = m_points.count, columns = m_points.columns;
         m_shared.resize(count);
         if (columns == 0) {
-            const std::vector<std::uint32_t> first = first_alike();
             for (std::size_t i = 0; i < count; ++i) {
-                if (first[i] != i) {
-                    m_shared[i] = m_shared[first[i]];
-                    continue;
-                }
                 start(i);
                 take(m_own, i - std::min(i, kRun), std::min(i + kRun + 1, count));
                 finish();
@@ -238,21 +230,6 @@ class Sharing {
     }
 
   private:
-    /// [points] the first that lies at the same place and faces the same way: corners of separate
-    /// faces that meet there, about half of a ball's, have the same neighbours.
-    std::vector<std::uint32_t> first_alike() const {
-        const auto look = [&](std::uint32_t i) {
-            const auto of = [i](const NoisyPoints::Columns& columns) {
-                return std::array{columns[0][i], columns[1][i], columns[2][i]};
-            };
-            return std::tuple(of(m_own.p), of(m_own.normal), of(m_own.told), m_own.side[i]);
-        };
-        std::vector<std::uint32_t> first(m_points.count), order;
-        for_sorted_runs(order, m_points.count, look, [&](std::span<const std::uint32_t> alike) {
-            for (const std::uint32_t i : alike) first[i] = alike.front();
-        });
-        return first;
-    }
     /// Of every second point of every second row and of the last ones, those around a point; all of
     /// them itself where it is such a one.
     std::array<std::size_t, 4> corners_of(std::size_t i) const {

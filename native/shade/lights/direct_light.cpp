@@ -110,9 +110,10 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
         if (!rays->empty()) set.set_casters(std::move(rays));
     }
     // What moves past lamps and shadows that stand still is lit by its way, be it no caster itself.
-    set.varies = std::ranges::any_of(scene.instances, [&](const Instance& instance) {
-        return !is_static(instance.world_from_object) || scene.geometry_of(instance).knots > 1;
-    });
+    set.varies =
+        set.varies || std::ranges::any_of(scene.instances, [&](const Instance& instance) {
+            return !is_static(instance.world_from_object) || scene.geometry_of(instance).knots > 1;
+        });
     anchors = anchors_of(lamps);
     set.set_lamps(std::move(lamps), progress);
 }
