@@ -46,7 +46,8 @@ def test_each_way_counts_what_it_has_met(scene, render, name):
     surface(veil, "ShaderNodeBsdfTransparent", (0.9, 0.9, 0.9))
     theirs, ours = render_bounced(scene, render, 1024, limit=6, transmission_bounces=6, samples=256)
     assert theirs.mean() > 0.01
-    assert ours.mean() == pytest.approx(theirs.mean(), rel=0.01)
+    # Two seeds of Transmission Depth, of glass alone, are 1.4 % apart here and .8 there.
+    assert ours.mean() == pytest.approx(theirs.mean(), rel=0.015)
 
 
 def test_a_mirror_in_a_mirror_is_deeper(scene, render):
