@@ -13,7 +13,6 @@ many seconds, and what each lacks, enlarged.
 """
 
 import argparse
-import json
 import math
 from pathlib import Path
 
@@ -21,7 +20,7 @@ import figure_files
 import frames
 import numpy as np
 import plot
-from measure import RESULTS, save
+from measure import save_over
 from pictures import srgb
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -152,13 +151,8 @@ def main():
     options = parser.parse_args()
     if options.sheets and not set(SHEET_SAMPLES) <= set(options.samples):
         parser.error(f"sheets show {SHEET_SAMPLES} samples")
-    file = RESULTS / "lit_convergence.json"
-    rows = json.loads(file.read_text()) if file.exists() else []
     for scene in options.scenes:
-        measured = measure(scene, options)
-        new = {identity(r) for r in measured}
-        rows = sorted([r for r in rows if identity(r) not in new] + measured, key=identity)
-        save("lit_convergence", rows)
+        rows = save_over("lit_convergence", measure(scene, options), identity)
     draw(rows)
 
 

@@ -61,3 +61,15 @@ def save(name, rows):
     """Writes bench/results/NAME.json."""
     RESULTS.mkdir(exist_ok=True)
     (RESULTS / f"{name}.json").write_text(json.dumps(rows, indent=1) + "\n")
+
+
+def save_over(name, measured, identity):
+    """Saves the rows beside those of earlier runs that have another identity(row), and returns all."""
+    file = RESULTS / f"{name}.json"
+    new = {identity(row) for row in measured}
+    kept = (
+        [r for r in json.loads(file.read_text()) if identity(r) not in new] if file.exists() else []
+    )
+    rows = sorted(kept + measured, key=identity)
+    save(name, rows)
+    return rows

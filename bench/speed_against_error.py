@@ -13,12 +13,11 @@ time keeps its rows, and draws docs/speed_against_error.svg.
 """
 
 import argparse
-import json
 from pathlib import Path
 
 import frames
 import plot
-from measure import RESULTS, save
+from measure import save_over
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENES = ("spheres", "lens", "lit", "feathers", "grass")
@@ -164,13 +163,8 @@ def main():
     parser.add_argument("--most", type=int, choices=(64, 256), default=256)
     parser.add_argument("--clock", choices=("processor", "wall"), default="processor")
     options = parser.parse_args()
-    file = RESULTS / "speed_against_error.json"
-    rows = json.loads(file.read_text()) if file.exists() else []
     for scene in options.scenes:
-        measured = measure(scene, options)
-        new = {identity(r) for r in measured}
-        rows = sorted([r for r in rows if identity(r) not in new] + measured, key=identity)
-        save("speed_against_error", rows)
+        rows = save_over("speed_against_error", measure(scene, options), identity)
     draw(rows)
 
 

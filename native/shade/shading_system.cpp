@@ -72,6 +72,10 @@ struct ShadingSystem::Impl : PointShader {
         return out;
     }
 
+    /// @param painted what runs over them reads nothing of them.
+    ShadingPoints points_of(const Grid& grid, bool painted) const {
+        return painted ? painted_points(grid.point_count()) : shading_points(grid, camera);
+    }
     RefinedPoints probed(const Grid& grid, std::span<const RefinedPoint> wanted,
                          bool painted) const {
         return painted ? RefinedPoints(grid, wanted)
@@ -237,9 +241,7 @@ struct ShadingSystem::Impl : PointShader {
     /// What the grid's points find by themselves; nullptr: it is left to samples.
     std::shared_ptr<GridShading> begin(Grid& grid, bool lit, float sharpness, float dense) const {
         auto begun = std::make_shared<GridShading>();
-        begun->points = is_painted(grid.material) && channels.empty()
-                            ? painted_points(grid.point_count())
-                            : shading_points(grid, camera);
+        begun->points = points_of(grid, is_painted(grid.material) && channels.empty());
         ShadingPoints& points = begun->points;
         begun->wants_refining = can_refine(grid);
         const float narrow = edge_share(grid);
@@ -364,9 +366,7 @@ bool ShadingSystem::reaches_others(int material) const {
 void ShadingSystem::shade_opacity(Grid& grid) const {
     if (!opacity_varies(grid.material)) return;
     const CompiledSurface& surface = m_impl->material(grid.material);
-    const ShadingPoints points = surface.opacity_program.is_still()
-                                     ? painted_points(grid.point_count())
-                                     : shading_points(grid, m_impl->camera);
+    const ShadingPoints points = m_impl->points_of(grid, surface.opacity_program.is_still());
     m_impl->shade_opacity(grid, m_impl->input(grid, points));
     const bool refines = m_impl->can_refine(grid), has_lines = refines && surface.has_lines();
     const auto is_open = [](const Vec3f& opacity) { return opacity != Vec3f(1.0f); };

@@ -169,6 +169,11 @@ def half_world(snapshot):
     }
 
 
+def link(node, output):
+    """What a socket is linked to: an output of the node of that index."""
+    return ("LINK", node, output)
+
+
 def translation(x, y=0.0, z=0.0):
     m = np.eye(4)
     m[:3, 3] = (x, y, z)

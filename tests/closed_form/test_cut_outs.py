@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import snapshots as s
+from snapshots import link
 from test_refined_shading import (
     CHANGES,
     CROPS,
@@ -17,10 +18,6 @@ from test_refined_shading import (
 
 def stage(executor="SIMD", **options):
     return s.orthographic(SIZE, executor=executor, **{"samples": 256, **options})
-
-
-def link(node, socket):
-    return ("LINK", node, socket)
 
 
 def cut(snapshot, operation, value, color=(1, 1, 1), of_x=()):

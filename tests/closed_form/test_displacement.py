@@ -7,14 +7,11 @@ import numpy as np
 import pytest
 import snapshots as s
 from session_parts import Kept
+from snapshots import link
 
 SIZE = 64
 MIDDLE = SIZE / 2
 FULL = 0.8 * 3.0 / np.pi  # of a matte surface that the sun meets straight on
-
-
-def link(node, output):
-    return ("LINK", node, output)
 
 
 def vector_math(operation, **inputs):

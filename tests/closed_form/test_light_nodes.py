@@ -4,13 +4,10 @@
 import numpy as np
 import pytest
 import snapshots as s
+from snapshots import link
 
 SIZE, POWER, HEIGHT = 32, 4e4, 40.0
 ALBEDO = 0.8
-
-
-def link(node, output):
-    return ("LINK", node, output)
 
 
 # Shines by the cosine to its axis, twice as strong in green.

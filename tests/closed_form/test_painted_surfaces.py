@@ -5,12 +5,10 @@ place is there and counts for nothing."""
 import numpy as np
 import pytest
 import snapshots as s
+from snapshots import link
+from test_patterns import math
 
 SIZE = (64, 48)
-
-
-def link(node, socket):
-    return ("LINK", node, socket)
 
 
 def waves(reads_place):
@@ -18,27 +16,19 @@ def waves(reads_place):
     nodes = [
         {"type": "ShaderNodeAttribute", "inputs": {}, "properties": {"attribute_name": "Place"}},
         {"type": "ShaderNodeSeparateXYZ", "inputs": {"Vector": link(0, "Vector")}},
-        math("MULTIPLY", link(1, "X"), 40.0),
-        math("SINE", link(2, "Value"), 0.0),
-        math("MULTIPLY", link(3, "Value"), 0.4),
-        math("ADD", link(4, "Value"), 0.5),
+        math("MULTIPLY", Value=link(1, "X"), Value_001=40.0),
+        math("SINE", Value=link(2, "Value"), Value_001=0.0),
+        math("MULTIPLY", Value=link(3, "Value"), Value_001=0.4),
+        math("ADD", Value=link(4, "Value"), Value_001=0.5),
     ]
     if reads_place:
         nodes += [
             {"type": "ShaderNodeNewGeometry", "inputs": {}},
             {"type": "ShaderNodeSeparateXYZ", "inputs": {"Vector": link(6, "Position")}},
-            math("MULTIPLY", link(7, "X"), 0.0),
-            math("ADD", link(5, "Value"), link(8, "Value")),
+            math("MULTIPLY", Value=link(7, "X"), Value_001=0.0),
+            math("ADD", Value=link(5, "Value"), Value_001=link(8, "Value")),
         ]
     return nodes, len(nodes) - 1
-
-
-def math(operation, a, b):
-    return {
-        "type": "ShaderNodeMath",
-        "inputs": {"Value": a, "Value_001": b},
-        "properties": {"operation": operation},
-    }
 
 
 def picture(kind, reads_place, executor="SIMD", lit=True, moves=False):

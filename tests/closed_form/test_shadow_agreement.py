@@ -19,14 +19,8 @@ def stage(bar=None, caster=None, **options):
         bar: part of the lamp's width that is covered just below it, from there to there.
         caster: rectangle (x0, y0, x1, y1) between the lamp and the floor.
     """
-    light_samples = options.pop("light_samples", LIGHT_SAMPLES)
-    options = {
-        "samples": 16,
-        "light_samples": light_samples,
-        "shading_threshold": 1000.0,
-        **options,
-    }
-    snapshot = s.orthographic(SIZE, executor="SIMD", **options)
+    fixed = {"samples": 16, "light_samples": LIGHT_SAMPLES, "shading_threshold": 1000.0}
+    snapshot = s.orthographic(SIZE, executor="SIMD", **{**fixed, **options})
     nodes = [{"type": "ShaderNodeBsdfDiffuse", "inputs": {"Color": (1, 1, 1, 1)}}]
     snapshot["materials"].append({"name": "Matte", "nodes": nodes, "surface": (0, "BSDF")})
     place = np.diag([1.0, -1.0, -1.0, 1.0])

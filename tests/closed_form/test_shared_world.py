@@ -5,8 +5,9 @@ was, in all passes, with less noise."""
 import numpy as np
 import pytest
 import snapshots as s
+from snapshots import link
 from test_bounces import ALBEDO, diffuse, material
-from test_world_light import COORDINATES, ENVIRONMENT, background, link
+from test_world_light import COORDINATES, ENVIRONMENT, background
 
 
 def beside_a_wall(wall=0.0, **options):

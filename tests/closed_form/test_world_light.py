@@ -4,12 +4,9 @@
 import numpy as np
 import pytest
 import snapshots as s
+from snapshots import link
 
 ALBEDO = 0.8
-
-
-def link(node, socket):
-    return ("LINK", node, socket)
 
 
 def stage(nodes, image):

@@ -109,7 +109,7 @@ int LampSet::samples_of(const LitPoint& point, const Lamp& lamp) const {
         !point.bsdf.can_see(center - point.at_frame.p, radius))
         return 0;
     if (!lamp.is_hard()) return point.sample_count;
-    if (lamp.varies() || point.paths.moves()) return point.sample_count;
+    if (!still) return point.sample_count;
     if (!changes(lamp)) return 1;
     const LitPlace& place = point.at_frame;
     LightSample sample;
