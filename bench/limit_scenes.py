@@ -12,8 +12,6 @@ import numpy as np
 import scenes
 from figure_files import write_png
 
-TEXTURES, TEXTURE_SIDE = 40, 4096
-
 
 def lit(width, tilt=0.0, place=(0, 0, 20), focal=None):
     """An empty file under a sun, on all cores."""
@@ -31,11 +29,12 @@ def clay():
 
 
 def plane(scene, name, size, place, surface):
-    """A square with UVs."""
+    """A square with UVs; `surface`: its material, or None."""
     bpy.ops.mesh.primitive_plane_add(size=size, location=place)
     item = bpy.context.object
     item.name = name
-    item.data.materials.append(surface)
+    if surface:
+        item.data.materials.append(surface)
     return item
 
 
@@ -65,17 +64,20 @@ def hairs():
     return scene
 
 
-def textures():
-    """40 planes with a PNG of 4096 x 4096 each."""
-    folder = frames.CACHE / "limits"
+def textured_planes(columns, count, size, step, side):
+    """Planes in rows, each with a PNG of its own, of side x side texels."""
+    folder = frames.CACHE / "limits" / str(side)
     folder.mkdir(parents=True, exist_ok=True)
-    files = [folder / f"{i}.png" for i in range(TEXTURES)]
+    files = [folder / f"{i}.png" for i in range(count)]
     if not files[-1].exists():
-        noise = np.random.default_rng(3).integers(96, 160, (TEXTURE_SIDE, TEXTURE_SIDE, 3))
+        noise = np.random.default_rng(3).integers(96, 160, (side, side, 3))
         write_png(files[0], noise.astype(np.uint8))
         for file in files[1:]:
             shutil.copy(files[0], file)
     scene = lit(960)
+    carrier = plane(scene, "Plane", size, (0, 0, 0), None).data
+    bpy.data.objects.remove(bpy.data.objects["Plane"])
+    rows = count // columns
     for i, file in enumerate(files):
 
         def textured(tree, node, file=file):
@@ -85,8 +87,21 @@ def textures():
             return node.outputs[0]
 
         surface = scenes.material(file.stem, "ShaderNodeBsdfDiffuse", (1, 1, 1), textured)
-        plane(scene, file.stem, 1.7, (1.9 * (i % 8 - 3.5), 1.8 * (i // 8 - 2), 0), surface)
+        mesh = carrier.copy()
+        mesh.materials.append(surface)
+        place = i % columns - (columns - 1) / 2, i // columns - rows / 2 + 0.5
+        scenes.add(scene, file.stem, mesh).location = (step * place[0], step * place[1], 0)
     return scene
+
+
+def textures():
+    """40 planes with a PNG of 4096 x 4096 each."""
+    return textured_planes(8, 40, 1.7, 1.85, 4096)
+
+
+def many_textures():
+    """2,000 planes with a PNG of 256 x 256 each."""
+    return textured_planes(50, 2000, 0.27, 0.3, 256)
 
 
 def ngon():
@@ -177,11 +192,36 @@ def tiles(faces_a_pixel):
     return scene
 
 
-def large_frame():
-    """8192 x 8192 pixels: balls."""
-    scene = lit(8192)
-    scene.render.resolution_y = 8192
+def balls(width, height):
+    """Small balls of a matte material, all over the frame."""
+    scene = lit(width)
+    scene.render.resolution_y = height
     scenes.add_spheres(scene, "ShaderNodeBsdfDiffuse", None, (-7, -7, -5), (7, 7, 5))
+    return scene
+
+
+def values():
+    """200 AOVs, a colour and a value by turns."""
+    scene = balls(480, 270)
+    layer = scene.view_layers[0]
+    for i in range(200):
+        aov = layer.aovs.add()
+        aov.name, aov.type = f"aov{i}", ("COLOR", "VALUE")[i % 2]
+    (tree,) = {item.active_material.node_tree for item in scene.objects if item.active_material}
+    for i in range(200):
+        output = tree.nodes.new("ShaderNodeOutputAOV")
+        # Until Blender 4.2 it is the name of the node.
+        setattr(output, "aov_name" if hasattr(output, "aov_name") else "name", f"aov{i}")
+        output.inputs["Color"].default_value = (i / 200, 0.5, 0.1, 1)
+        output.inputs["Value"].default_value = i / 200
+    return scene
+
+
+def layers():
+    """50 view layers of the same things."""
+    scene = balls(480, 270)
+    for i in range(49):
+        scene.view_layers.new(f"Layer{i}")
     return scene
 
 
@@ -189,11 +229,15 @@ SCENES = {
     "100,000 things of 100 faces that move": moving_things,
     "1 M hairs": hairs,
     "40 textures of 4096 x 4096": textures,
+    "2,000 textures of 256 x 256": many_textures,
     "n-gon of 100,000 corners": ngon,
     "2,000 nodes": nodes,
     "5 M faces": faces,
     "2 M faces that are displaced": displaced_faces,
     "4 faces a pixel": lambda: tiles(4),
     "700 faces a pixel": lambda: tiles(700),
-    "8192 x 8192 pixels": large_frame,
+    "200 AOVs": values,
+    "50 view layers": layers,
+    "8192 x 8192 pixels": lambda: balls(8192, 8192),
+    "16384 x 16384 pixels": lambda: balls(16384, 16384),
 }

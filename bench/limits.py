@@ -19,13 +19,17 @@ ROWS = {
     "100,000 things of 100 faces that move": 16,
     "1 M hairs": 16,
     "40 textures of 4096 x 4096": 16,
+    "2,000 textures of 256 x 256": 16,
     "n-gon of 100,000 corners": 16,
     "2,000 nodes": 16,
     "5 M faces": 16,
     "2 M faces that are displaced": 16,
     "4 faces a pixel": 16,
     "700 faces a pixel": 16,
+    "200 AOVs": 16,
+    "50 view layers": 16,
     "8192 x 8192 pixels": 4,
+    "16384 x 16384 pixels": 4,
 }
 
 

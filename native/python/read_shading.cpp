@@ -7,9 +7,12 @@
 namespace granita::python {
 namespace {
 
+/// ("LINK", node, output) or (node, output)
 NodeLink read_link(const Record& r, const py::handle& value, std::size_t node, std::size_t limit) {
-    const auto sequence = py::reinterpret_borrow<py::sequence>(value);
-    const std::size_t first = sequence.size() - 2;  // ("LINK", node, output) or (node, output)
+    const auto sequence = py::cast<py::sequence>(value);
+    const std::size_t size = sequence.size();
+    if (size < 2) r.fail("a link of node " + std::to_string(node) + " names no node and output");
+    const std::size_t first = size - 2;
     NodeLink link{py::cast<int>(sequence[first]), py::cast<std::string>(sequence[first + 1])};
     if (link.node < 0 || static_cast<std::size_t>(link.node) >= limit)
         r.fail("node " + std::to_string(node) + " is linked to node " + std::to_string(link.node) +
@@ -37,7 +40,7 @@ NodeProperty read_property(const py::handle& value) {
     if (py::isinstance<py::str>(value)) return py::cast<std::string>(value);
     if (py::isinstance<py::array>(value) || (py::isinstance<py::sequence>(value))) {
         const auto a = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(value);
-        if (!a) throw py::error_already_set();
+        if (!a) throw py::cast_error("no numbers");
         return std::vector<float>(a.data(), a.data() + a.size());
     }
     return py::cast<double>(value);
@@ -46,32 +49,28 @@ NodeProperty read_property(const py::handle& value) {
 }  // namespace
 
 void read_graph(const Record& r, NodeGraph& graph) {
-    try {
-        for (const py::handle item : r.list("nodes")) {
-            const Record node(py::cast<py::dict>(item), r.datablock());
-            const std::size_t index = graph.nodes.size();
-            Node out;
-            out.type = node.text("type");
-            out.name = node.text("name", out.type);
-            if (node.has("inputs"))
-                for (const auto& [key, value] : py::cast<py::dict>(node.get("inputs")))
-                    out.inputs[py::cast<std::string>(key)] = read_input(r, value, index);
-            if (node.has("properties"))
-                for (const auto& [key, value] : py::cast<py::dict>(node.get("properties")))
-                    out.properties[py::cast<std::string>(key)] = read_property(value);
-            graph.nodes.push_back(std::move(out));
-        }
-        const std::size_t count = graph.nodes.size();
-        if (r.has("surface")) graph.surface = read_link(r, r.get("surface"), count, count);
-        if (r.has("displacement"))
-            graph.displacement = read_link(r, r.get("displacement"), count, count);
-        if (r.has("volume")) graph.volume = read_link(r, r.get("volume"), count, count);
-        graph.displacement_method = static_cast<DisplacementMethod>(
-            choice(r, "displacement_method", r.text("displacement_method", "DISPLACEMENT"),
-                   {"BUMP", "DISPLACEMENT", "BOTH"}));
-    } catch (const py::cast_error&) {
-        r.fail("its node graph holds a value of the wrong type");
+    for (const py::handle item : r.list("nodes")) {
+        const Record node(py::cast<py::dict>(item), r.datablock());
+        const std::size_t index = graph.nodes.size();
+        Node out;
+        out.type = node.text("type");
+        out.name = node.text("name", out.type);
+        if (node.has("inputs"))
+            for (const auto& [key, value] : py::cast<py::dict>(node.get("inputs")))
+                out.inputs[py::cast<std::string>(key)] = read_input(r, value, index);
+        if (node.has("properties"))
+            for (const auto& [key, value] : py::cast<py::dict>(node.get("properties")))
+                out.properties[py::cast<std::string>(key)] = read_property(value);
+        graph.nodes.push_back(std::move(out));
     }
+    const std::size_t count = graph.nodes.size();
+    if (r.has("surface")) graph.surface = read_link(r, r.get("surface"), count, count);
+    if (r.has("displacement"))
+        graph.displacement = read_link(r, r.get("displacement"), count, count);
+    if (r.has("volume")) graph.volume = read_link(r, r.get("volume"), count, count);
+    graph.displacement_method = static_cast<DisplacementMethod>(
+        choice(r, "displacement_method", r.text("displacement_method", "DISPLACEMENT"),
+               {"BUMP", "DISPLACEMENT", "BOTH"}));
 }
 
 namespace {

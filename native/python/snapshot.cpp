@@ -8,6 +8,18 @@
 namespace granita::python {
 namespace {
 
+void read_world(const Record& r, World& world) {
+    world.name = r.text("name", "World");
+    world.lights_scene = r.boolean("lights_scene", true);
+    world.visible_camera = r.boolean("visible_camera", true);
+    world.visible_diffuse = r.boolean("visible_diffuse", true);
+    world.visible_glossy = r.boolean("visible_glossy", true);
+    world.visible_transmission = r.boolean("visible_transmission", true);
+    world.visible_volume = r.boolean("visible_volume", true);
+    world.most_bounces = read_most_bounces(r);
+    read_graph(r, world.graph);
+}
+
 std::string shape_text(const std::vector<py::ssize_t>& shape) {
     std::string text = "[";
     for (const auto n : shape)
@@ -85,11 +97,10 @@ Vec2d Record::pair(const char* key) const {
 
 py::list Record::list(const char* key) const {
     if (!has(key)) return py::list();
-    try {
-        return py::cast<py::list>(get(key));
-    } catch (const py::cast_error&) {
+    const py::object value = get(key);
+    if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value))
         fail(std::string("'") + key + "' must be a list");
-    }
+    return py::list(value);
 }
 
 Record Record::record(const char* key) const {
@@ -182,23 +193,26 @@ std::vector<Mat4d> matrices(const Record& record, const char* key) {
 std::shared_ptr<Scene> read_scene(const py::dict& snapshot) {
     const Record root(snapshot, "scene");
     auto scene = std::make_shared<Scene>();
-    read_options(root.record("options"), scene->options);
+    const auto read_one = [&](const char* key, auto& target, auto read) {
+        read_checked(root.record(key), [&](const Record& r) { read(r, target); });
+    };
+    read_one("options", scene->options, read_options);
     const Record camera = root.record("camera");
-    read_camera(Record(py::cast<py::dict>(root.get("camera")),
-                       "camera '" + camera.text("name", "Camera") + "'"),
-                scene->camera);
+    read_checked(camera.named("camera '" + camera.text("name", "Camera") + "'"),
+                 [&](const Record& r) { read_camera(r, scene->camera); });
 
     const auto read_list = [&](const char* key, const char* kind, auto& target, auto read) {
         for (const py::handle item : root.list(key)) {
             if (!py::isinstance<py::dict>(item))
                 root.fail(std::string("'") + key + "' must hold dicts");
-            const auto dict = py::reinterpret_borrow<py::dict>(item);
-            const std::string name = Record(dict, kind).text("name");
+            const Record unnamed(py::reinterpret_borrow<py::dict>(item), kind);
+            const std::string name = unnamed.text("name");
             // Geometry names already say what they are ("mesh 'Cube'").
             const bool named = name.find('\'') != std::string::npos;
             target.emplace_back();
             target.back().name = name;
-            read(Record(dict, named ? name : std::string(kind) + " '" + name + "'"), target.back());
+            read_checked(unnamed.named(named ? name : std::string(kind) + " '" + name + "'"),
+                         [&](const Record& r) { read(r, target.back()); });
         }
     };
     read_list("geometries", "mesh", scene->geometries, read_geometry);
@@ -212,21 +226,10 @@ std::shared_ptr<Scene> read_scene(const py::dict& snapshot) {
     read_list("images", "image", scene->images,
               [&](const Record& r, Image& image) { read_image(r, spaces, image); });
     if (root.has("working_space"))
-        read_working_space(root.record("working_space"), scene->working_space);
+        read_one("working_space", scene->working_space, read_working_space);
     read_list("lights", "light", scene->lights, read_light);
-    if (root.has("world")) {
-        const Record world = root.record("world");
-        scene->world.name = world.text("name", "World");
-        scene->world.lights_scene = world.boolean("lights_scene", true);
-        scene->world.visible_camera = world.boolean("visible_camera", true);
-        scene->world.visible_diffuse = world.boolean("visible_diffuse", true);
-        scene->world.visible_glossy = world.boolean("visible_glossy", true);
-        scene->world.visible_transmission = world.boolean("visible_transmission", true);
-        scene->world.visible_volume = world.boolean("visible_volume", true);
-        scene->world.most_bounces = read_most_bounces(world);
-        read_graph(world, scene->world.graph);
-    }
-    if (root.has("instances")) read_instances(root.record("instances"), *scene);
+    if (root.has("world")) read_one("world", scene->world, read_world);
+    if (root.has("instances")) read_one("instances", *scene, read_instances);
     return scene;
 }
 

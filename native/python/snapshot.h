@@ -26,6 +26,7 @@ class Record {
         : m_dict(std::move(dict)), m_datablock(std::move(datablock)) {}
 
     const std::string& datablock() const { return m_datablock; }
+    Record named(std::string datablock) const { return {m_dict, std::move(datablock)}; }
     bool has(const char* key) const;
     py::object get(const char* key) const;  ///< throws SceneError when absent
 
@@ -64,6 +65,21 @@ class Record {
     std::string m_datablock;
     mutable std::vector<const char*> m_asked;
 };
+
+/// Calls `read(record)`.  What Python cannot make a value of the type that it wants of is refused
+/// by the record's name.
+template <class Read>
+void read_checked(const Record& record, Read read) {
+    const std::string wrong = "holds a value of the wrong type";
+    try {
+        read(record);
+    } catch (const py::cast_error&) {
+        record.fail(wrong);
+    } catch (const py::error_already_set& error) {
+        if (error.matches(PyExc_MemoryError)) throw;
+        record.fail(wrong + ": " + py::cast<std::string>(py::str(error.value())));
+    }
+}
 
 /// The index of `text` in the identifiers, or a SceneError that lists them.
 int choice(const Record& record, const char* key, const std::string& value,

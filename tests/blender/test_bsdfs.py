@@ -201,10 +201,6 @@ def _cloths_and_cartoons():
     return kinds
 
 
-# The tables of sheen, of which Granita has a fit (bsdf/sheen_fit.h).
-_SHEEN = {"Sheen": 0.02, "Principled": 0.01 if _SINCE_4 else LIMIT}
-
-
 @pytest.mark.parametrize("turn", [BEFORE, BEHIND], ids=["before", "behind"])
 def test_cloth_toon_and_translucent(scene, render, turn):
     # Squares that lean far: cloth shines where it is grazed.
@@ -213,7 +209,7 @@ def test_cloth_toon_and_translucent(scene, render, turn):
         report = {"Translucent": report["Translucent"]}
     else:
         report.pop("Translucent")
-    check(report, _SHEEN)
+    check(report)
 
 
 @pytest.mark.skipif(not _SINCE_4, reason="velvet is not seen from below")

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "shade/bsdf/sheen_fit.h"
+#include "shade/bsdf/sheen_table.h"
 #include "shade/lights/leaving_rays.h"
 
 namespace granita {

@@ -7,7 +7,7 @@
 #include "math/sampling.h"
 #include "shade/bsdf/fresnel.h"
 #include "shade/bsdf/lobe_shape.h"
-#include "shade/bsdf/sheen_fit.h"
+#include "shade/bsdf/sheen_table.h"
 
 namespace granita {
 namespace {

@@ -14,7 +14,7 @@
 #include <cmath>
 
 #include "shade/bsdf/fresnel.h"
-#include "shade/bsdf/sheen_fit.h"
+#include "shade/bsdf/sheen_table.h"
 #include "shade/nodes/anisotropy.h"
 #include "shade/nodes/glass.h"
 #include "shade/nodes/layer_albedo.h"

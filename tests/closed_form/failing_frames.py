@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frames of which one allocation fails (failing_new.cpp is preloaded).
+
+`python failing_frames.py STEP` lets each STEP-th allocation of the frames of damaged_parts.whole() fail in turn, and prints where it is
+and how the frames ended.  A whole frame between them tells that nothing of the process was spoiled.
+"""
+
+import ctypes
+import sys
+from collections import Counter
+
+import damaged_parts
+import numpy as np
+
+import granita_core
+
+
+def outcome(snapshot):
+    try:
+        granita_core.render(snapshot)
+    except MemoryError:
+        return "MemoryError"
+    except granita_core.Error as error:
+        assert "memory" in str(error), error
+        return type(error).__name__
+    return "rendered"
+
+
+def main(step):
+    library = ctypes.CDLL(None)
+    library.fail_new_after.argtypes = [ctypes.c_long]
+    library.asked_new.restype = ctypes.c_long
+    ends = Counter()
+    for index, snapshot in enumerate(damaged_parts.whole()):
+        granita_core.render(snapshot)  # what is made once for all frames
+        library.fail_new_after(-1)
+        expected = granita_core.render(snapshot)["combined"]
+        for number in range(index % step, library.asked_new(), step):
+            print(index, number, flush=True)
+            library.fail_new_after(number)
+            ends[outcome(snapshot)] += 1
+            library.fail_new_after(-1)
+        np.testing.assert_array_equal(granita_core.render(snapshot)["combined"], expected)
+    print(dict(ends))
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]))
