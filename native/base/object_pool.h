@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -20,9 +21,15 @@ class ObjectPool {
         pool.pop_back();
         return out;
     }
-    static void give(T&& object) {
+    /// Destructors call it: what there is no memory to keep goes.
+    static void give(T&& object) noexcept {
         std::vector<T>& pool = list();
-        if (pool.size() < kMost) pool.push_back(std::move(object));
+        if (pool.size() >= kMost) return;
+        try {
+            pool.push_back(std::move(object));
+        } catch (const std::bad_alloc&) {
+            return;
+        }
     }
 
   private:

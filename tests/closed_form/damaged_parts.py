@@ -66,7 +66,7 @@ def _elements():
     matte = session_parts.matte(snapshot, (0.8, 0.6, 0.4), 0.5)
     random = np.random.default_rng(2)
     curves(snapshot, random.uniform(-1, 1, (2, 12, 3)) + [0, 0, 5], [5, 4, 2, 1], 0.1, matte)
-    cloud(snapshot, random.uniform(-1, 1, (9, 3)) + [0, 0, 5], np.full((2, 9), 0.2), matte)
+    cloud(snapshot, random.uniform(-1, 1, (9, 3)) + [0, 0, 5], 0.2, matte)
     box(snapshot, (-2, -2, 3), (2, 2, 6), filled(snapshot, scatter(0.2), absorption(), emitted(0.1)))
     place = np.stack([s.translation(x, 3.0) @ np.diag([1.0, 1.0, -1.0, 1.0]) for x in (0, 1)])
     lamp = {"world_from_light": place, "energy": 9.0, "color": (1, 1, 1), "radius": 0.1}

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A frame for which memory does not suffice ends by itself and says what took it."""
 
+import ast
+import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -101,3 +104,22 @@ def test_no_bit_depends_on_a_limit_that_suffices(memory):
         return s.render(snapshot)["combined"]
 
     assert np.array_equal(picture(memory=memory), picture())
+
+
+@pytest.mark.skipif(not shutil.which("c++"), reason="no compiler of C++")
+def test_any_allocation_may_fail(tmp_path):
+    """Each 10,007th of some frames in turn; `python failing_frames.py 10` are all that the issue of a small frame holds."""
+    library = tmp_path / "failing_new.so"
+    source = HERE / "failing_new.cpp"
+    subprocess.run(["c++", "-O2", "-shared", "-fPIC", "-o", library, source], check=True)
+    run = subprocess.run(
+        [sys.executable, str(HERE / "failing_frames.py"), "1009"],
+        capture_output=True,
+        text=True,
+        timeout=600,
+        env={**os.environ, "LD_PRELOAD": str(library)},
+    )
+    *_, last = run.stdout.strip().split("\n")
+    assert run.returncode == 0, f"allocation {last}: {run.stderr[-2000:]}"
+    ends = ast.literal_eval(last)
+    assert sum(ends.values()) > 20
