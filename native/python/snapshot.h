@@ -73,7 +73,7 @@ void read_checked(const Record& record, Read read) {
     const std::string wrong = "holds a value of the wrong type";
     try {
         read(record);
-    } catch (const py::cast_error&) {
+    } catch (const py::builtin_exception&) {
         record.fail(wrong);
     } catch (const py::error_already_set& error) {
         if (error.matches(PyExc_MemoryError)) throw;
