@@ -165,48 +165,57 @@ def _damaged_array(value, random):
 
 def _other(value, random):
     """In place of a leaf."""
-    if random.integers(5) == 0:
+    if random.integers(12) == 0:
         return STRANGE[random.integers(len(STRANGE))]
     if isinstance(value, np.ndarray):
         return _damaged_array(value, random)
     if isinstance(value, str):
         return random.choice([value[:-1], value + "x", value.lower(), "é\x1b[31m", value * 99])
+    if isinstance(value, int | float) and random.integers(2):
+        return value * random.choice([-1.0, 0.01, 0.5, 1.5, 40.0])
     return NUMBERS[random.integers(len(NUMBERS))]
 
 
-def _damage_once(place, random):
-    """Goes down to an entry by chance, and spoils it or its place."""
-    while True:
-        keys = list(place) if isinstance(place, dict) else list(range(len(place)))
-        if not keys:
-            return
-        key = keys[random.integers(len(keys))]
-        inner = place[key]
-        if isinstance(inner, tuple) and random.integers(2):
-            place[key] = inner = list(inner)
-        if isinstance(inner, dict | list) and len(inner) and random.integers(12):
-            place = inner
-            continue
-        break
-    way = random.integers(10)
+def _places(container):
+    """[(container, key)] of all that lies in it, however deep.  Tuples become lists."""
+    keys = container.keys() if isinstance(container, dict) else range(len(container))
+    places = []
+    for key in list(keys):
+        if isinstance(container[key], tuple):
+            container[key] = list(container[key])
+        inner = container[key]
+        places.append((container, key))
+        if isinstance(inner, dict | list):
+            places += _places(inner)
+        elif isinstance(inner, np.ndarray):
+            places += [(container, key)] * 3
+    return places
+
+
+def _damage_once(snapshot, random):
+    """Spoils an entry by chance, or its place."""
+    places = _places(snapshot)
+    container, key = places[random.integers(len(places))]
+    inner, way = container[key], random.integers(16)
     if way == 0:
-        del place[key]
-    elif way == 1 and isinstance(place, list):
-        place.insert(key, copy.deepcopy(inner))
-    elif way == 2 and isinstance(place, dict):
-        place[f"{key}x"] = place.pop(key)
+        del container[key]
+    elif way == 1 and isinstance(container, list):
+        container.insert(key, copy.deepcopy(inner))
+    elif way == 2 and isinstance(container, dict):
+        container[f"{key}x"] = container.pop(key)
     elif way == 3:
+        keys = list(container) if isinstance(container, dict) else range(len(container))
         other = keys[random.integers(len(keys))]
-        place[key], place[other] = place[other], inner
-    else:
-        place[key] = _other(inner, random)
+        container[key], container[other] = container[other], inner
+    elif not isinstance(inner, dict | list) or way == 4:
+        container[key] = _other(inner, random)
 
 
 def damaged(number, bases):
     """The snapshot of a number, which alone decides what is spoiled in which of the whole ones."""
     random = np.random.default_rng(number)
     snapshot = copy.deepcopy(bases[number % len(bases)])
-    for _ in range(random.integers(1, 4)):
+    for _ in range(random.choice([1, 1, 1, 2, 3, 6])):
         _damage_once(snapshot, random)
     return snapshot
 
