@@ -22,7 +22,21 @@ SIZE = (8, 6)
 PATIENCE = 0.5
 NUMBERS = (0, 1, -1, 2, 0.5, -0.0, 1e-45, 1e-9, 1e9, 1e30, -1e30, 1e300, 255, 65536)
 NUMBERS += (2**31 - 1, 2**31, -(2**31), 2**63, np.nan, np.inf, -np.inf)
-STRANGE = (None, "", "x", "\0", "\ud800", b"x", True, [], (), {}, [[1.0]], ("LINK", 0), ("LINK", 9, "BSDF"))
+STRANGE = (
+    None,
+    "",
+    "x",
+    "\0",
+    "\ud800",
+    b"x",
+    True,
+    [],
+    (),
+    {},
+    [[1.0]],
+    ("LINK", 0),
+    ("LINK", 9, "BSDF"),
+)
 
 
 def _small(snapshot):
@@ -67,7 +81,9 @@ def _elements():
     random = np.random.default_rng(2)
     curves(snapshot, random.uniform(-1, 1, (2, 12, 3)) + [0, 0, 5], [5, 4, 2, 1], 0.1, matte)
     cloud(snapshot, random.uniform(-1, 1, (9, 3)) + [0, 0, 5], 0.2, matte)
-    box(snapshot, (-2, -2, 3), (2, 2, 6), filled(snapshot, scatter(0.2), absorption(), emitted(0.1)))
+    box(
+        snapshot, (-2, -2, 3), (2, 2, 6), filled(snapshot, scatter(0.2), absorption(), emitted(0.1))
+    )
     place = np.stack([s.translation(x, 3.0) @ np.diag([1.0, 1.0, -1.0, 1.0]) for x in (0, 1)])
     lamp = {"world_from_light": place, "energy": 9.0, "color": (1, 1, 1), "radius": 0.1}
     more = {"sun_angle": 0.1, "spot_size": 1.0, "spot_blend": 0.2, "shape": "DISK", "size": (1, 2)}
@@ -86,7 +102,13 @@ def _textured():
     """Images in a colour space, procedural textures, a bump, glass, wax and Principled."""
     snapshot = s.perspective((48, 32), 60.0, bounces=3, film_transparent=False)
     texels = np.random.default_rng(3).integers(0, 255, (4, 8, 4)).astype(np.uint8)
-    space = {"name": "Q", "curve": "TABLE", "table": np.float32([0, 0.2, 1]), "low": 0.0, "high": 1.0}
+    space = {
+        "name": "Q",
+        "curve": "TABLE",
+        "table": np.float32([0, 0.2, 1]),
+        "low": 0.0,
+        "high": 1.0,
+    }
     snapshot["color_spaces"] = [space]
     floats = texels.astype(np.float32) / 255
     snapshot["images"] = [
@@ -97,7 +119,10 @@ def _textured():
     tiles = {"image": "I", "tiles": np.float32([1001, 1002]), "tiles_of": "I"}
     ramp = np.linspace(0, 1, 1024).reshape(256, 4).astype(np.float32)
     shaders = {
-        "ShaderNodeBsdfPrincipled": {"Base Color": s.link(1, "Color"), "Normal": s.link(3, "Normal")},
+        "ShaderNodeBsdfPrincipled": {
+            "Base Color": s.link(1, "Color"),
+            "Normal": s.link(3, "Normal"),
+        },
         "ShaderNodeBsdfGlass": {"Color": s.link(4, "Color"), "Roughness": 0.1, "IOR": 1.4},
         "ShaderNodeSubsurfaceScattering": {"Radius": (1.0, 0.5, 0.2), "Scale": 0.5},
         "ShaderNodeBsdfGlossy": {"Roughness": s.link(2, "Fac")},
@@ -112,7 +137,11 @@ def _textured():
                 if i
                 else tiles,
             },
-            {"type": "ShaderNodeTexNoise", "inputs": {"Scale": 4.0}, "properties": {"version": 405}},
+            {
+                "type": "ShaderNodeTexNoise",
+                "inputs": {"Scale": 4.0},
+                "properties": {"version": 405},
+            },
             {"type": "ShaderNodeBump", "inputs": {"Height": s.link(2, "Fac"), "Strength": 0.5}},
             {
                 "type": "ShaderNodeValToRGB",

@@ -51,7 +51,9 @@ def test_two_plates(bounces):
     lower, upper, shines = 0.7, 0.5, 1.5
     snapshot = s.orthographic((16, 16), samples=16, bounces=bounces, light_samples=64, **LIMITS)
     reach = 4e3
-    s.quad(snapshot, s.rectangle(-reach, -reach, reach, reach, 20.0)[::-1], diffuse(snapshot, lower))
+    s.quad(
+        snapshot, s.rectangle(-reach, -reach, reach, reach, 20.0)[::-1], diffuse(snapshot, lower)
+    )
     s.quad(
         snapshot,
         s.rectangle(-reach, -reach, reach, reach, -20.0),

@@ -27,7 +27,13 @@ def solid(snapshot, outline, surface, **more):
     n = len(outline)
     points = [(x, y, z) for y in (-40.0, 60.0) for x, z in outline]
     sides = [(i, n + i, n + (i + 1) % n, (i + 1) % n) for i in range(n)]
-    return s.mesh(snapshot, points, [*sides, tuple(range(n)), tuple(range(2 * n - 1, n - 1, -1))], surface, **more)
+    return s.mesh(
+        snapshot,
+        points,
+        [*sides, tuple(range(n)), tuple(range(2 * n - 1, n - 1, -1))],
+        surface,
+        **more,
+    )
 
 
 def edge(snapshot, x, z):
