@@ -24,6 +24,10 @@ constexpr float kStepsAPixel = 4.0f;
 /// point should not show that.
 constexpr double kStretch = 1.5;
 
+/// Farthest over nearest depth of a small face's corners: what runs to the horizon takes any number
+/// of micropolygons between them.
+constexpr float kDeepest = 64.0f;
+
 /// Faces that are looked at in a piece of a loop.
 constexpr std::size_t kGrain = 1 << 12;
 
@@ -79,6 +83,16 @@ std::vector<Levels> find_levels(const OpenedMesh& mesh, ScreenPoints& screen) {
     for (int i = 0; i <= most; ++i) limit2[i] = std::ldexp(longest * longest, 2 * i);
     std::vector<Vec2f> length2(part.patch_count(),
                                Vec2f(0.0f));  // of the longer side along u, along v
+    const Projection& projection = mesh.view().projection;
+    const auto is_deep = [&](std::span<const Vec3f> points, const Corners& c) {
+        auto [near, far] = std::pair(INFINITY, 0.0f);
+        for (int i = 0; i < c.count; ++i) {
+            near = std::min(near, points[c.v[i]].z);
+            far = std::max(far, points[c.v[i]].z);
+        }
+        near = std::max(near, static_cast<float>(projection.near_clip));
+        return projection.perspective && far > kDeepest * near;
+    };
     const auto is_small = [&](const Vec2f& l) { return std::max(l.x, l.y) <= limit2[most]; };
     std::atomic<std::size_t> left = part.patch_count();
     for (int k = 0; k < mesh.knot_count() && left > 0; ++k) {
@@ -95,7 +109,7 @@ std::vector<Levels> find_levels(const OpenedMesh& mesh, ScreenPoints& screen) {
             length2[p] = glm::max(
                 length2[p], Vec2f(std::max(side2[0], side2[2]), std::max(side2[1], side2[3])));
             // What is not a number is not small.
-            if (!(side2[0] + side2[1] + side2[2] + side2[3] < INFINITY))
+            if (!(side2[0] + side2[1] + side2[2] + side2[3] < INFINITY) || is_deep(points, c))
                 length2[p] = Vec2f(INFINITY);
             return is_small(length2[p]) ? std::size_t{0} : std::size_t{1};
         };
