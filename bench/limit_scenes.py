@@ -207,13 +207,14 @@ def values():
     for i in range(200):
         aov = layer.aovs.add()
         aov.name, aov.type = f"aov{i}", ("COLOR", "VALUE")[i % 2]
-    (tree,) = {item.active_material.node_tree for item in scene.objects if item.active_material}
-    for i in range(200):
-        output = tree.nodes.new("ShaderNodeOutputAOV")
-        # Until Blender 4.2 it is the name of the node.
-        setattr(output, "aov_name" if hasattr(output, "aov_name") else "name", f"aov{i}")
-        output.inputs["Color"].default_value = (i / 200, 0.5, 0.1, 1)
-        output.inputs["Value"].default_value = i / 200
+    trees = {item.active_material.node_tree for item in scene.objects if item.active_material}
+    for tree in trees:
+        for i in range(200):
+            output = tree.nodes.new("ShaderNodeOutputAOV")
+            # Until Blender 4.2 it is the name of the node.
+            setattr(output, "aov_name" if hasattr(output, "aov_name") else "name", f"aov{i}")
+            output.inputs["Color"].default_value = (i / 200, 0.5, 0.1, 1)
+            output.inputs["Value"].default_value = i / 200
     return scene
 
 
