@@ -4,12 +4,19 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "dice/coarsen_shading.h"
 #include "dice/lattice.h"
 #include "dice/raster_bound.h"
 
 namespace granita {
+namespace {
+
+/// How many times fewer micropolygons another base must promise: of a plump triangle all are alike.
+constexpr double kThin = 4.0;
+
+}  // namespace
 
 std::vector<Bounds3f> patch_boxes(const OpenedMesh& mesh, const BasePatch& patch,
                                   const Vec2d* corner_uv) {
@@ -49,6 +56,61 @@ int Patch::splittable(bool along_u) const {
 }
 
 void Patch::measure() {
+    find_rates();
+    if (m_diceable) return;
+    turn_thin();
+    if (m_thin && splittable(true) == 2) m_split_u = true;
+}
+
+/// Lines of a triangle run from its base to its apex: of three corners that lie nearly in a line,
+/// as boolean operations and the n-gons of buildings leave them, each as long as the whole, though
+/// nothing lies between (half of a screen's width: 281,000 micropolygons of no area).  The base
+/// that has the fewest of them is taken, or the longest, from whose middle a short line cuts the
+/// triangle in two with short bases.
+void Patch::turn_thin() {
+    m_thin = false;
+    if (m_patch.kind != PatchKind::Triangle || !m_sides[kTop].collapsed) return;
+    if (m_sides[kBottom].collapsed || m_sides[kRight].collapsed || m_sides[kLeft].collapsed) return;
+    Vec3f corner[3];
+    EdgePoint point;
+    for (int i = 0; i < 3; ++i) {
+        m_mesh->surface_point(m_patch, m_corner_uv[i], point);
+        corner[i] = point.p[m_mesh->knots().frame_knot];
+    }
+    const EdgeRate& rate = m_mesh->rate();
+    double side[3], lattice[3];
+    for (int i = 0; i < 3; ++i) side[i] = rate.facing_length(corner[i], corner[(i + 1) % 3]);
+    for (int i = 0; i < 3; ++i)
+        lattice[i] = side[i] * std::max(side[(i + 1) % 3], side[(i + 2) % 3]);
+    const int longest = static_cast<int>(std::max_element(side, side + 3) - side);
+    const Vec3f middle = 0.5f * (corner[longest] + corner[(longest + 1) % 3]);
+    const double cut = side[longest] * rate.facing_length(middle, corner[(longest + 2) % 3]);
+    int base = static_cast<int>(std::min_element(lattice, lattice + 3) - lattice);
+    if (kThin * cut < lattice[base]) {
+        base = longest;
+        m_thin = true;
+    } else if (!(kThin * lattice[base] < lattice[0])) {
+        return;
+    }
+    if (base == 0) return;
+    turn(base);
+    find_rates();
+}
+
+/// Side `base` of a triangle, bottom, right or left in turn, becomes its bottom.
+void Patch::turn(int base) {
+    PatchEdge around[3] = {m_sides[kBottom], m_sides[kRight], m_sides[kLeft]};
+    around[2].reversed = !around[2].reversed;
+    const Vec2d uv[3] = {m_corner_uv[0], m_corner_uv[1], m_corner_uv[2]};
+    for (int i = 0; i < 4; ++i) m_corner_uv[i] = uv[(base + std::min(i, 2)) % 3];
+    m_sides[kBottom] = around[base];
+    m_sides[kRight] = around[(base + 1) % 3];
+    m_sides[kLeft] = around[(base + 2) % 3];
+    m_sides[kLeft].reversed = !m_sides[kLeft].reversed;
+    std::swap(m_budget_u, m_budget_v);
+}
+
+void Patch::find_rates() {
     const int grid_size = std::max(m_mesh->view().scene->options.grid_size, 1);
     const int most = static_cast<int>(std::bit_width(static_cast<unsigned>(grid_size))) - 1;
     const EdgeWalker walk(*m_mesh, m_patch);

@@ -45,6 +45,9 @@ class Patch final : public Primitive {
 
     Patch(std::shared_ptr<const OpenedMesh> mesh, const BasePatch& patch);
     void measure();
+    void find_rates();
+    void turn_thin();
+    void turn(int base);
     void measure_inside(const EdgeWalker& walk, int most);
     /// 0 not at all, 1 into a triangle and a rest, 2 in the middle.
     int splittable(bool along_u) const;
@@ -65,6 +68,7 @@ class Patch final : public Primitive {
     Rates m_border;  ///< what the sides need
     Rates m_rates;   ///< what is diced: the sides, and the surface between them
     bool m_diceable = false, m_split_u = false;
+    bool m_thin = false;  ///< a triangle whose apex lies close to the middle of its base
 };
 
 }  // namespace granita
