@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What files hold that nobody means to draw: frames of one line, things at the end of the world, trees that go round."""
+
+import bpy
+import numpy as np
+import pytest
+import scene_parts as parts
+from node_comparison import render_both
+
+COLOR = (0.25, 0.5, 0.75)
+
+
+def combined(passes):
+    return np.stack([passes[f"ViewLayer.Combined.{c}"] for c in "RGBA"], axis=-1)
+
+
+@pytest.mark.parametrize("size", [(1, 5000), (5000, 1), (16384, 4), (4, 16384)], ids=str)
+def test_frames_of_a_line(scene, render, size):
+    parts.add_camera(scene, ortho_scale=1.0)
+    parts.add_square(scene, size=4.0, material=parts.emission("Glow", COLOR))
+    # Four at least, of each of which a part is taken.
+    scene.render.resolution_x, scene.render.resolution_y = (4 * side for side in size)
+    scene.render.resolution_percentage = 25
+    image = combined(render(scene))
+    assert image.shape[:2] == size[::-1]
+    np.testing.assert_allclose(image, np.broadcast_to((*COLOR, 1.0), image.shape), rtol=1e-6)
+
+
+def _view(scene, at):
+    """A hundred metres of a cube that leans, lit by a sun, with a camera that comes along."""
+    sun = bpy.data.lights.new("Sun", "SUN")
+    sun.energy, sun.angle = 3.0, 0.0
+    parts.add_object(scene, "Sun", sun).rotation_euler = (0.5, 0.4, 0.0)
+    bpy.ops.mesh.primitive_cube_add(size=100.0)
+    cube = bpy.context.object
+    cube.location, cube.rotation_euler = (at, at, 0.0), (0.3, 0.5, 0.2)
+    matte = bpy.data.materials.new("Matte")
+    cube.data.materials.append(matte)
+    camera = parts.add_camera(scene, (at, at, 500.0))
+    camera.data.clip_end = 1e4
+    scene.granita.samples = 64
+
+
+def test_things_a_hundred_thousand_kilometres_away(scene, render):
+    """Blender keeps places in single precision: 8 m of steps at 1e8 m, of which all here are multiples."""
+    _view(scene, 0.0)
+    here = combined(render(scene, "here"))
+    for name in ("Cube", "Camera"):
+        scene.objects[name].location.x = scene.objects[name].location.y = 1e8
+    there = combined(render(scene, "there"))
+    assert here[..., 0].std() > 0.1
+    # Places of the cube's surface in double precision, but matrices in single.
+    assert np.abs(there - here).mean() < 2e-3
+
+
+def test_faces_that_are_there_twice_are_there_once(scene, render):
+    parts.add_camera(scene)
+    glow = parts.emission("Glow", COLOR)
+    corners = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]
+    once = parts.add_mesh(scene, "Once", corners, [(0, 1, 2, 3)], material=glow)
+    once.rotation_euler = (0.3, 0.2, 0.7)
+    expected = combined(render(scene, "once"))
+    twice = parts.add_mesh(scene, "Twice", 2 * corners, [(0, 1, 2, 3), (4, 5, 6, 7), (3, 2, 1, 0)])
+    twice.data.materials.append(glow)
+    twice.rotation_euler = once.rotation_euler
+    bpy.data.objects.remove(once)
+    np.testing.assert_array_equal(combined(render(scene, "twice")), expected)
+
+
+@pytest.mark.parametrize("scale", [(0, 1, 1), (1, 0, 1), (1e-6, 1e4, 1), (1, 1, 0)], ids=str)
+def test_what_is_flattened_hides_no_other_pixel(scene, render, scale):
+    """A ball of no volume, with a lamp below it, behind what is seen."""
+    parts.add_camera(scene)
+    parts.add_square(scene, material=parts.emission("Glow", COLOR)).rotation_euler = (0.3, 0.2, 0.7)
+    expected = combined(render(scene, "without"))
+    bpy.ops.mesh.primitive_uv_sphere_add(location=(0, 0, -2))
+    ball = bpy.context.object
+    ball.scale = scale
+    lamp = parts.add_object(scene, "Lamp", bpy.data.lights.new("Lamp", "AREA"))
+    lamp.parent = ball
+    image = combined(render(scene, "with"))
+    covered = expected[..., 3] == 1.0
+    np.testing.assert_array_equal(image[covered], expected[covered])
+    assert np.isfinite(image).all()
+
+
+def _without_an_output(tree):
+    tree.nodes.remove(next(n for n in tree.nodes if n.type == "OUTPUT_MATERIAL"))
+
+
+def _empty(tree):
+    tree.nodes.clear()
+
+
+def _goes_round(tree):
+    """Two nodes that each feed the other; Blender itself forbids the second link and keeps it."""
+    emission = next(n for n in tree.nodes if n.type == "EMISSION")
+    a, b = (tree.nodes.new("ShaderNodeMixRGB") for _ in range(2))
+    tree.links.new(a.outputs[0], b.inputs[1])
+    tree.links.new(b.outputs[0], a.inputs[1])
+    tree.links.new(b.outputs[0], emission.inputs["Color"])
+
+
+def _two_outputs(tree):
+    other = tree.nodes.new("ShaderNodeOutputMaterial")
+    other.is_active_output = True
+
+
+@pytest.mark.parametrize("build", [_without_an_output, _empty, _goes_round, _two_outputs])
+def test_trees_that_lead_nowhere_are_as_in_cycles(scene, render, build):
+    parts.add_camera(scene)
+    material = parts.emission("Glow", COLOR)
+    parts.add_square(scene, size=20.0, material=material)
+    build(material.node_tree)
+    theirs, ours = render_both(scene, render)
+    np.testing.assert_allclose(ours, theirs, atol=2e-3)
