@@ -13,8 +13,10 @@
 namespace granita {
 namespace {
 
-/// How many times fewer micropolygons another base must promise: of a plump triangle all are alike.
+/// How many times fewer micropolygons another base must promise, of a plump triangle all are alike;
+/// and than the best promises there must be room for, that halves of it are tried.
 constexpr double kThin = 4.0;
+constexpr double kThinner = 6.0;
 
 }  // namespace
 
@@ -64,9 +66,9 @@ void Patch::measure() {
 
 /// Lines of a triangle run from its base to its apex: of three corners that lie nearly in a line,
 /// as boolean operations and the n-gons of buildings leave them, each as long as the whole, though
-/// nothing lies between (half of a screen's width: 281,000 micropolygons of no area).  The base
-/// that has the fewest of them is taken, or the longest, from whose middle a short line cuts the
-/// triangle in two with short bases.
+/// nothing lies between (of half a screen's width: 281,000 micropolygons of no area).  The base
+/// that has the fewest of them is taken; where that is many more than there is room for, the
+/// longest side is, and halved (Rivara 1984), until a half has a short base.
 void Patch::turn_thin() {
     m_thin = false;
     if (m_patch.kind != PatchKind::Triangle || !m_sides[kTop].collapsed) return;
@@ -83,10 +85,12 @@ void Patch::turn_thin() {
     for (int i = 0; i < 3; ++i)
         lattice[i] = side[i] * std::max(side[(i + 1) % 3], side[(i + 2) % 3]);
     const int longest = static_cast<int>(std::max_element(side, side + 3) - side);
-    const Vec3f middle = 0.5f * (corner[longest] + corner[(longest + 1) % 3]);
-    const double cut = side[longest] * rate.facing_length(middle, corner[(longest + 2) % 3]);
+    const Vec3d base_side(corner[(longest + 1) % 3] - corner[longest]);
+    const Vec3d other(corner[(longest + 2) % 3] - corner[longest]);
+    const double part = glm::length(glm::cross(base_side, other)) / glm::dot(base_side, base_side);
+    const double height = side[longest] * part;
     int base = static_cast<int>(std::min_element(lattice, lattice + 3) - lattice);
-    if (kThin * cut < lattice[base]) {
+    if (kThinner * side[longest] * std::max(height, rate.rate()) < lattice[base]) {
         base = longest;
         m_thin = true;
     } else if (!(kThin * lattice[base] < lattice[0])) {

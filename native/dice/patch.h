@@ -68,7 +68,7 @@ class Patch final : public Primitive {
     Rates m_border;  ///< what the sides need
     Rates m_rates;   ///< what is diced: the sides, and the surface between them
     bool m_diceable = false, m_split_u = false;
-    bool m_thin = false;  ///< a triangle whose apex lies close to the middle of its base
+    bool m_thin = false;  ///< a triangle that is halved along its base
 };
 
 }  // namespace granita
