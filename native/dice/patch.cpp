@@ -16,7 +16,7 @@ namespace {
 /// How many times fewer micropolygons another base must promise, of a plump triangle all are alike;
 /// and than the best promises there must be room for, that halves of it are tried.
 constexpr double kThin = 4.0;
-constexpr double kThinner = 6.0;
+constexpr double kThinner = 3.0;
 
 }  // namespace
 
