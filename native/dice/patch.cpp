@@ -17,6 +17,8 @@ namespace {
 /// and than the best promises there must be room for, that halves of it are tried.
 constexpr double kThin = 4.0;
 constexpr double kThinner = 3.0;
+/// Micropolygons along a side of a grid, below which nothing is halved.
+constexpr double kGridSide = 16.0;
 
 }  // namespace
 
@@ -90,7 +92,7 @@ void Patch::turn_thin() {
     const double part = glm::length(glm::cross(base_side, other)) / glm::dot(base_side, base_side);
     const double height = side[longest] * part;
     int base = static_cast<int>(std::min_element(lattice, lattice + 3) - lattice);
-    if (kThinner * side[longest] * std::max(height, rate.rate()) < lattice[base]) {
+    if (kThinner * side[longest] * std::max(height, kGridSide * rate.rate()) < lattice[base]) {
         base = longest;
         m_thin = true;
     } else if (!(kThin * lattice[base] < lattice[0])) {
