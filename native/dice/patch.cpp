@@ -9,6 +9,7 @@
 #include "dice/coarsen_shading.h"
 #include "dice/lattice.h"
 #include "dice/raster_bound.h"
+#include "dice/visible_area.h"
 
 namespace granita {
 namespace {
@@ -19,6 +20,15 @@ constexpr double kThin = 4.0;
 constexpr double kThinner = 3.0;
 /// Micropolygons along a side of a grid, below which nothing is halved.
 constexpr double kGridSide = 16.0;
+/// Square micropolygons a point of a strip, below which it takes fewer light samples than a whole
+/// pixel's: of one as wide as they are, half.
+constexpr double kStrip = 0.25;
+
+void share_pixels(Grid& grid, const Projection& projection, double rate) {
+    const double area = visible_area(grid, grid.shading_p(), projection);
+    if (area < kStrip * rate * rate * static_cast<double>(grid.vertex_count()))
+        set_point_share(grid, area, rate);
+}
 
 }  // namespace
 
@@ -271,6 +281,7 @@ std::unique_ptr<Grid> Patch::dice() const {
         m_mesh->report().warn(m_mesh->instance().name, "a grid without any finite vertex left out");
         return nullptr;
     }
+    if (std::min(grid->n_u, grid->n_v) == 1) share_pixels(*grid, projection, m_mesh->rate().rate());
     if (m_mesh->rate().shading_rate() > m_mesh->rate().rate())
         coarsen_shading(*grid, projection, m_mesh->rate().shading_rate());
     return grid;
