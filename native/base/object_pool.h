@@ -21,7 +21,7 @@ class ObjectPool {
         pool.pop_back();
         return out;
     }
-    /// Destructors call it: what there is no memory to keep goes.
+    /// For destructors: an object that there is no memory to keep is destroyed.
     static void give(T&& object) noexcept {
         std::vector<T>& pool = list();
         if (pool.size() >= kMost) return;

@@ -34,19 +34,15 @@ OpenedMesh::Start OpenedPolygons::start(const BasePatch& patch, int budget) cons
         static const Vec2d corner_uv[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
         std::copy_n(corner_uv, 4, start.corner_uv);
         std::copy_n(around, 4, start.sides);
+        for (const int side : {2, 3}) start.sides[side].reversed = !start.sides[side].reversed;
     } else {
         int levels[3];
         for (int i = 0; i < 3; ++i)
             levels[i] = around[i].levels < 0 ? budget + 1 : static_cast<int>(around[i].levels);
         const int base = triangle_base(levels);
         triangle_corners(base, start.corner_uv);
-        start.sides[0] = around[base];
-        start.sides[1] = around[(base + 1) % 3];
-        start.sides[2].collapsed = true;
-        start.sides[3] = around[(base + 2) % 3];
+        set_triangle_sides(around, base, start.sides);
     }
-    start.sides[3].reversed = !start.sides[3].reversed;
-    if (n == 4) start.sides[2].reversed = !start.sides[2].reversed;
     return start;
 }
 

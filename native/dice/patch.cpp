@@ -9,26 +9,15 @@
 #include "dice/coarsen_shading.h"
 #include "dice/lattice.h"
 #include "dice/raster_bound.h"
-#include "dice/visible_area.h"
 
 namespace granita {
 namespace {
 
-/// How many times fewer micropolygons another base must promise, of a plump triangle all are alike;
-/// and than the best promises there must be room for, that halves of it are tried.
-constexpr double kThin = 4.0;
-constexpr double kThinner = 3.0;
-/// Micropolygons along a side of a grid, below which nothing is halved.
-constexpr double kGridSide = 16.0;
-/// Square micropolygons a point of a strip, below which it takes fewer light samples than a whole
-/// pixel's: of one as wide as they are, half.
-constexpr double kStrip = 0.25;
-
-void share_pixels(Grid& grid, const Projection& projection, double rate) {
-    const double area = visible_area(grid, grid.shading_p(), projection);
-    if (area < kStrip * rate * rate * static_cast<double>(grid.vertex_count()))
-        set_point_share(grid, area, rate);
-}
+/// Another base is taken where it promises so many times fewer micropolygons (of a plump triangle
+/// all promise the same), and the longest side halved where even the best promises so many times
+/// what the area needs.
+constexpr double kFewer = 4.0;
+constexpr double kThin = 3.0;
 
 }  // namespace
 
@@ -71,46 +60,46 @@ int Patch::splittable(bool along_u) const {
 
 void Patch::measure() {
     find_rates();
-    if (m_diceable) return;
-    turn_thin();
-    if (m_thin && splittable(true) == 2) m_split_u = true;
+    if (m_diceable || m_patch.kind != PatchKind::Triangle) return;
+    const Base best = best_base();
+    if (best.side > 0) {
+        turn(best.side);
+        find_rates();
+    }
+    if (best.halved && splittable(true) == 2) m_split_u = true;
 }
 
 /// Lines of a triangle run from its base to its apex: of three corners that lie nearly in a line,
 /// as boolean operations and the n-gons of buildings leave them, each as long as the whole, though
-/// nothing lies between (of half a screen's width: 281,000 micropolygons of no area).  The base
-/// that has the fewest of them is taken; where that is many more than there is room for, the
-/// longest side is, and halved (Rivara 1984), until a half has a short base.
-void Patch::turn_thin() {
-    m_thin = false;
-    if (m_patch.kind != PatchKind::Triangle || !m_sides[kTop].collapsed) return;
-    if (m_sides[kBottom].collapsed || m_sides[kRight].collapsed || m_sides[kLeft].collapsed) return;
-    Vec3f corner[3];
+/// nothing lies between (of 940 pixels 281,000 micropolygons of no area).  So the base that has the
+/// fewest of them is taken; where that is many more than there is room for, the longest side is,
+/// and halved (Rivara 1984), until a half has a short base.  What fits into a grid is not halved
+/// for.
+Patch::Base Patch::best_base() const {
+    if (!m_sides[kTop].collapsed) return {};
+    if (m_sides[kBottom].collapsed || m_sides[kRight].collapsed || m_sides[kLeft].collapsed)
+        return {};
+    const Projection& projection = m_mesh->view().projection;
+    Vec2d corner[3];
     EdgePoint point;
     for (int i = 0; i < 3; ++i) {
         m_mesh->surface_point(m_patch, m_corner_uv[i], point);
-        corner[i] = point.p[m_mesh->knots().frame_knot];
+        const Vec3d p(point.p[m_mesh->knots().frame_knot]);
+        if (projection.perspective && !(p.z >= projection.near_clip)) return {};
+        corner[i] = Vec2d(projection.scale) * Vec2d(p) / (projection.perspective ? p.z : 1.0);
     }
-    const EdgeRate& rate = m_mesh->rate();
     double side[3], lattice[3];
-    for (int i = 0; i < 3; ++i) side[i] = rate.facing_length(corner[i], corner[(i + 1) % 3]);
+    for (int i = 0; i < 3; ++i) side[i] = glm::distance(corner[i], corner[(i + 1) % 3]);
     for (int i = 0; i < 3; ++i)
         lattice[i] = side[i] * std::max(side[(i + 1) % 3], side[(i + 2) % 3]);
     const int longest = static_cast<int>(std::max_element(side, side + 3) - side);
-    const Vec3d base_side(corner[(longest + 1) % 3] - corner[longest]);
-    const Vec3d other(corner[(longest + 2) % 3] - corner[longest]);
-    const double part = glm::length(glm::cross(base_side, other)) / glm::dot(base_side, base_side);
-    const double height = side[longest] * part;
-    int base = static_cast<int>(std::min_element(lattice, lattice + 3) - lattice);
-    if (kThinner * side[longest] * std::max(height, kGridSide * rate.rate()) < lattice[base]) {
-        base = longest;
-        m_thin = true;
-    } else if (!(kThin * lattice[base] < lattice[0])) {
-        return;
-    }
-    if (base == 0) return;
-    turn(base);
-    find_rates();
+    const int best = static_cast<int>(std::min_element(lattice, lattice + 3) - lattice);
+    const Vec2d a = corner[1] - corner[0], b = corner[2] - corner[0];
+    const double height = std::abs(a.x * b.y - a.y * b.x) / side[longest];
+    const double grid_side =
+        m_mesh->rate().rate() * std::sqrt(m_mesh->view().scene->options.grid_size);
+    if (kThin * side[longest] * std::max(height, grid_side) < lattice[best]) return {longest, true};
+    return {kFewer * lattice[best] < lattice[0] ? best : 0, false};
 }
 
 /// Side `base` of a triangle, bottom, right or left in turn, becomes its bottom.
@@ -119,10 +108,7 @@ void Patch::turn(int base) {
     around[2].reversed = !around[2].reversed;
     const Vec2d uv[3] = {m_corner_uv[0], m_corner_uv[1], m_corner_uv[2]};
     for (int i = 0; i < 4; ++i) m_corner_uv[i] = uv[(base + std::min(i, 2)) % 3];
-    m_sides[kBottom] = around[base];
-    m_sides[kRight] = around[(base + 1) % 3];
-    m_sides[kLeft] = around[(base + 2) % 3];
-    m_sides[kLeft].reversed = !m_sides[kLeft].reversed;
+    set_triangle_sides(around, base, m_sides);
     std::swap(m_budget_u, m_budget_v);
 }
 
@@ -281,7 +267,6 @@ std::unique_ptr<Grid> Patch::dice() const {
         m_mesh->report().warn(m_mesh->instance().name, "a grid without any finite vertex left out");
         return nullptr;
     }
-    if (std::min(grid->n_u, grid->n_v) == 1) share_pixels(*grid, projection, m_mesh->rate().rate());
     if (m_mesh->rate().shading_rate() > m_mesh->rate().rate())
         coarsen_shading(*grid, projection, m_mesh->rate().shading_rate());
     return grid;

@@ -46,7 +46,12 @@ class Patch final : public Primitive {
     Patch(std::shared_ptr<const OpenedMesh> mesh, const BasePatch& patch);
     void measure();
     void find_rates();
-    void turn_thin();
+    /// 0 to 2: bottom, right, left; whether it is to be halved first.
+    struct Base {
+        int side = 0;
+        bool halved = false;
+    };
+    Base best_base() const;
     void turn(int base);
     void measure_inside(const EdgeWalker& walk, int most);
     /// 0 not at all, 1 into a triangle and a rest, 2 in the middle.
@@ -68,7 +73,6 @@ class Patch final : public Primitive {
     Rates m_border;  ///< what the sides need
     Rates m_rates;   ///< what is diced: the sides, and the surface between them
     bool m_diceable = false, m_split_u = false;
-    bool m_thin = false;  ///< a triangle that is halved along its base
 };
 
 }  // namespace granita

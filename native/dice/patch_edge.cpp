@@ -26,6 +26,15 @@ constexpr int kLeastRough = LatticeStencil::kMostLevels + 1;
 
 }  // namespace
 
+void set_triangle_sides(const PatchEdge* around, int base, PatchEdge* sides) {
+    sides[0] = around[base];
+    sides[1] = around[(base + 1) % 3];
+    sides[2] = PatchEdge{};
+    sides[2].collapsed = true;
+    sides[3] = around[(base + 2) % 3];
+    sides[3].reversed = !sides[3].reversed;
+}
+
 void EdgeWalker::edge_point(const PatchEdge& side, double t, EdgePoint& out) const {
     if (!side.line) {
         m_mesh.edge_point(side.edge, t, out);

@@ -55,6 +55,10 @@ struct PatchEdge {
     bool refined() const { return levels != 0; }
 };
 
+/// The sides of a patch from those around a triangle, each of which leaves its corner: `base` is
+/// the bottom, the top its apex.
+void set_triangle_sides(const PatchEdge* around, int base, PatchEdge* sides);
+
 /// Sides seen from a patch; `at` runs in the patch's direction.
 class EdgeWalker {
   public:

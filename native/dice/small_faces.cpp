@@ -24,8 +24,8 @@ constexpr float kStepsAPixel = 4.0f;
 /// point should not show that.
 constexpr double kStretch = 1.5;
 
-/// Farthest over nearest depth of a small face's corners: what runs to the horizon takes any number
-/// of micropolygons between them.
+/// Farthest over nearest depth of a small face's corners: one that is deeper may take any number of
+/// micropolygons once it is diced.
 constexpr float kDeepest = 64.0f;
 
 /// Faces that are looked at in a piece of a loop.
@@ -85,13 +85,13 @@ std::vector<Levels> find_levels(const OpenedMesh& mesh, ScreenPoints& screen) {
                                Vec2f(0.0f));  // of the longer side along u, along v
     const Projection& projection = mesh.view().projection;
     const auto is_deep = [&](std::span<const Vec3f> points, const Corners& c) {
+        if (!projection.perspective) return false;
         auto [near, far] = std::pair(INFINITY, 0.0f);
         for (int i = 0; i < c.count; ++i) {
             near = std::min(near, points[c.v[i]].z);
             far = std::max(far, points[c.v[i]].z);
         }
-        near = std::max(near, static_cast<float>(projection.near_clip));
-        return projection.perspective && far > kDeepest * near;
+        return far > kDeepest * std::max(near, static_cast<float>(projection.near_clip));
     };
     const auto is_small = [&](const Vec2f& l) { return std::max(l.x, l.y) <= limit2[most]; };
     std::atomic<std::size_t> left = part.patch_count();

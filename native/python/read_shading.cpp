@@ -40,7 +40,7 @@ NodeProperty read_property(const py::handle& value) {
     if (py::isinstance<py::str>(value)) return py::cast<std::string>(value);
     if (py::isinstance<py::array>(value) || (py::isinstance<py::sequence>(value))) {
         const auto a = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(value);
-        if (!a) throw py::cast_error("no numbers");
+        if (!a) throw py::cast_error();
         return std::vector<float>(a.data(), a.data() + a.size());
     }
     return py::cast<double>(value);
@@ -55,12 +55,14 @@ void read_graph(const Record& r, NodeGraph& graph) {
         Node out;
         out.type = node.text("type");
         out.name = node.text("name", out.type);
-        if (node.has("inputs"))
-            for (const auto& [key, value] : py::cast<py::dict>(node.get("inputs")))
-                out.inputs[py::cast<std::string>(key)] = read_input(r, value, index);
-        if (node.has("properties"))
-            for (const auto& [key, value] : py::cast<py::dict>(node.get("properties")))
-                out.properties[py::cast<std::string>(key)] = read_property(value);
+        read_checked(node.named(r.datablock() + ", node '" + out.name + "'"), [&](const Record& n) {
+            if (n.has("inputs"))
+                for (const auto& [key, value] : py::cast<py::dict>(n.get("inputs")))
+                    out.inputs[py::cast<std::string>(key)] = read_input(r, value, index);
+            if (n.has("properties"))
+                for (const auto& [key, value] : py::cast<py::dict>(n.get("properties")))
+                    out.properties[py::cast<std::string>(key)] = read_property(value);
+        });
         graph.nodes.push_back(std::move(out));
     }
     const std::size_t count = graph.nodes.size();

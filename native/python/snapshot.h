@@ -66,18 +66,17 @@ class Record {
     mutable std::vector<const char*> m_asked;
 };
 
-/// Calls `read(record)`.  What Python cannot make a value of the type that it wants of is refused
-/// by the record's name.
+/// Calls `read(record)`.  A value that Python cannot convert is refused by the record's name; what
+/// is no error of a value (Ctrl-C, no memory) goes on.
 template <class Read>
 void read_checked(const Record& record, Read read) {
-    const std::string wrong = "holds a value of the wrong type";
     try {
         read(record);
     } catch (const py::builtin_exception&) {
-        record.fail(wrong);
+        record.fail("holds a value of the wrong type");
     } catch (const py::error_already_set& error) {
-        if (error.matches(PyExc_MemoryError)) throw;
-        record.fail(wrong + ": " + py::cast<std::string>(py::str(error.value())));
+        if (!error.matches(PyExc_Exception) || error.matches(PyExc_MemoryError)) throw;
+        record.fail("holds a value of the wrong type");
     }
 }
 

@@ -2,7 +2,7 @@
 """Snapshots that are damaged by chance: what an export that errs, or a script, may hand to the native module.
 
 `python damaged_parts.py FIRST COUNT` renders those of the numbers, for bench/damaged_snapshots.py and
-test_bad_snapshots.py; each prints its number before it begins, and how it ended.
+test_bad_snapshots.py; each prints its number before it begins, and the last line is how many ended how.
 """
 
 import copy
@@ -122,6 +122,7 @@ def _textured():
         "ShaderNodeBsdfPrincipled": {
             "Base Color": s.link(1, "Color"),
             "Normal": s.link(3, "Normal"),
+            "Sheen Weight": 0.5,
         },
         "ShaderNodeBsdfGlass": {"Color": s.link(4, "Color"), "Roughness": 0.1, "IOR": 1.4},
         "ShaderNodeSubsurfaceScattering": {"Radius": (1.0, 0.5, 0.2), "Scale": 0.5},
@@ -236,7 +237,9 @@ def _damage_once(snapshot, random):
         keys = list(container) if isinstance(container, dict) else range(len(container))
         other = keys[random.integers(len(keys))]
         container[key], container[other] = container[other], inner
-    elif not isinstance(inner, dict | list) or way == 4:
+    elif isinstance(inner, dict | list) and inner and way != 4:
+        _damage_once(inner, random)
+    else:
         container[key] = _other(inner, random)
 
 
@@ -259,6 +262,8 @@ def outcome(snapshot):
         if not error.datablock:
             raise
         return "refused"
+    except granita_core.InternalError:
+        raise
     except granita_core.Error:
         return "failed"
     began, cancelled = time.monotonic(), False

@@ -236,3 +236,13 @@ def test_blur_spares_light_samples_that_it_averages(blurred):
     assert pixel < still_pixel
     # As designed; one picture's noise of 256 such means is known to a twelfth or so.
     assert square < 1.3 * still_square
+
+
+def test_what_lies_far_away_in_one_direction_takes_no_more(executor):
+    """A face that runs to the horizon, nearly along the view: samples of its near end alone see it."""
+    snapshot = s.perspective((32, 24), 30.0, samples=4, executor=executor)
+    points = [(-0.2, 0.1, 4.0), (0.2, 0.1, 4.0), (0.2, 0.1, 1e12), (-0.2, 0.1, 1e12)]
+    s.mesh(snapshot, points, [(0, 1, 2, 3)], s.emission(snapshot))
+    result = s.render(snapshot)
+    assert result["combined"][..., 3].sum() == pytest.approx(0.5 * 3.0 * 0.75, rel=0.25)
+    assert result["statistics"]["micropolygons"] < 20_000

@@ -7,8 +7,9 @@ namespace granita {
 
 SheenFit sheen_fit(float cosine, float roughness) {
     constexpr int kSide = kSheenTableSide, kLast = kSide - 1;
-    const float x = std::clamp(cosine, 0.0f, 1.0f) * kLast,
-                y = std::clamp(roughness, 1e-3f, 1.0f) * kLast;
+    // What is no number counts as the least.
+    const float x = (cosine > 0.0f ? std::min(cosine, 1.0f) : 0.0f) * kLast,
+                y = (roughness > 1e-3f ? std::min(roughness, 1.0f) : 1e-3f) * kLast;
     const int column = std::min(static_cast<int>(x), kLast - 1),
               row = std::min(static_cast<int>(y), kLast - 1);
     const float u = x - static_cast<float>(column), v = y - static_cast<float>(row);
