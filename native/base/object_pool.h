@@ -21,12 +21,14 @@ class ObjectPool {
         pool.pop_back();
         return out;
     }
-    /// For destructors: an object that there is no memory to keep is destroyed.
+    /// Takes it in any case, for destructors too: one that there is no room or memory to keep is
+    /// destroyed.
     static void give(T&& object) noexcept {
+        T taken = std::move(object);
         std::vector<T>& pool = list();
         if (pool.size() >= kMost) return;
         try {
-            pool.push_back(std::move(object));
+            pool.push_back(std::move(taken));
         } catch (const std::bad_alloc&) {
             return;
         }
