@@ -24,6 +24,7 @@ def say(word):
 engine = granita.engine.GranitaRenderEngine
 render = engine.render
 def watched(self, depsgraph):
+    bridge.load()  # two hundred libraries, .3 s in one call that nothing interrupts
     say("export")
     render(self, depsgraph)
     say("returned")
