@@ -2,11 +2,13 @@
 """Keeps what each test measured against which limit, for the tables of docs (case_table.py).
 
 Every `assert error <= limit` of two numbers becomes a property "held" of its test in `--junitxml` reports.
+Takes a share of the cases of each test (`--cases K/N`).
 """
 
 import ast
 import operator
 import re
+import zlib
 
 import pytest
 
@@ -47,3 +49,27 @@ def pytest_assertion_pass(item, lineno, orig, expl):
     error, limit = (number(side) for side in sides.groups()) if sides else (None, None)
     if error is not None and limit is not None and limit > 0:
         item.user_properties.append(("held", f"{error:.3g} {limit:.3g}"))
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--cases",
+        metavar="K/N",
+        help="of each test the first case and those whose name's checksum is K modulo N",
+    )
+
+
+def pytest_collection_modifyitems(config, items):
+    share = config.getoption("--cases")
+    if share is None:
+        return
+    rest, parts = map(int, share.split("/"))
+    seen, kept, left_out = set(), [], []
+    for item in items:
+        test = item.parent.nodeid, item.originalname
+        # By names, not by places: cases are often products of parameters, whose every fourth would have one of them alike.
+        is_kept = test not in seen or zlib.crc32(item.name.encode()) % parts == rest
+        (kept if is_kept else left_out).append(item)
+        seen.add(test)
+    config.hook.pytest_deselected(items=left_out)
+    items[:] = kept

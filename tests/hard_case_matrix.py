@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The matrix of docs/hard_cases.md: a row a case, a column an executor, from the reports of a test run.
 
-    python3 tests/hard_case_matrix.py build/reports/native-*.xml build/reports/plain.xml
+    python3 tests/hard_case_matrix.py build/reports/native-*.xml build/reports/closed_form.xml
 
 A cell is `error / tolerance` of the assertion that came nearest to its tolerance in the case's tests for the executor
 (conftest.py, native/measured.h), or `held` where they ask for equality or count.  Replaces the table in the document;

@@ -10,27 +10,6 @@ import pytest
 import scene_parts
 
 
-def pytest_addoption(parser):
-    parser.addoption(
-        "--first-cases",
-        action="store_true",
-        help="of tests marked `lit` the first case of each alone",
-    )
-
-
-def pytest_collection_modifyitems(config, items):
-    if not config.getoption("--first-cases"):
-        return
-    seen, kept, left_out = set(), [], []
-    for item in items:
-        test = item.parent.nodeid, item.originalname
-        is_more = test in seen and item.get_closest_marker("lit")
-        (left_out if is_more else kept).append(item)
-        seen.add(test)
-    config.hook.pytest_deselected(items=left_out)
-    items[:] = kept
-
-
 @pytest.fixture
 def scene():
     """An empty scene of factory settings, 64 by 48 pixels, rendered by Granita without bounces."""

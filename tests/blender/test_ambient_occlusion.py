@@ -8,8 +8,6 @@ import scene_parts
 from bounced_parts import render_bounced, surface
 from node_comparison import Tree, render_both, rmse
 
-pytestmark = pytest.mark.lit
-
 SIZE, BLOCK = 48, 6
 
 

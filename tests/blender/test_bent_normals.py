@@ -120,7 +120,6 @@ def test_diffuse_shaders_with_normals_that_turn_away(scene, render):
     check(scene, render)
 
 
-@pytest.mark.lit
 @pytest.mark.parametrize("lean", [0.6, 1.2])
 def test_a_world_through_what_is_translucent_and_bent(scene, render, lean):
     """Cycles fades what lamps send through bent normals, and not what it meets by chance: that was 2.7 % too dark."""

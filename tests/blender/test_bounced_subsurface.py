@@ -11,8 +11,6 @@ from bounced_parts import look_at_stage, render_bounced, surface
 from mathutils import Vector
 from test_subsurface import lamp, methods
 
-pytestmark = pytest.mark.lit
-
 COLOR, RADIUS = (0.8, 0.6, 0.4), (0.3, 0.15, 0.08)
 
 

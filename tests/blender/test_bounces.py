@@ -18,8 +18,6 @@ from granita.export.scene.light_paths import (
     report_transparent_glass,
 )
 
-pytestmark = pytest.mark.lit
-
 
 def test_no_limits_are_handed_over_where_light_is_not_followed(scene):
     scene.granita.bounces = "NONE"

@@ -10,8 +10,6 @@ import scene_parts
 from export_probe import through_engine
 from scene_parts import set_world
 
-pytestmark = pytest.mark.lit
-
 
 @pytest.fixture
 def stage(scene):

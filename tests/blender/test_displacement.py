@@ -10,8 +10,6 @@ import scene_parts
 from bounced_parts import light_stage, look_at_stage, render_bounced, worst_block
 from node_comparison import Tree
 
-pytestmark = pytest.mark.lit
-
 
 def displace_by(material, method):
     owner = material if hasattr(material, "displacement_method") else material.cycles

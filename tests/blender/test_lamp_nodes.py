@@ -16,8 +16,6 @@ from test_lights import (
     set_stage,
 )
 
-pytestmark = pytest.mark.lit
-
 # Turned, scaled and away from the world's origin, so that no two spaces are alike.
 PLACE = (1.0, -1.5, 3.0), (0.5, 0.4, 0.7)
 LAMPS = {

@@ -7,8 +7,6 @@ import scene_parts
 from bounced_parts import closure, met_by_chance, render_bounced, room, surface
 from node_comparison import Tree, socket
 
-pytestmark = pytest.mark.lit
-
 KINDS = ["Ray Depth", "Diffuse Depth", "Glossy Depth", "Transmission Depth", "Transparent Depth"]
 
 

@@ -11,8 +11,6 @@ import scene_parts
 from node_comparison import Tree
 from test_volumes import filled
 
-pytestmark = pytest.mark.lit
-
 SIZE, BLOCK = 64, 4
 DIFFUSE_DIRECT = "Diffuse Direct.R" if bpy.app.version >= (5, 0) else "DiffDir.R"
 

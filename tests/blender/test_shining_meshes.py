@@ -10,8 +10,6 @@ import pytest
 import scene_parts
 from bounced_parts import render_bounced, room, surface
 
-pytestmark = pytest.mark.lit
-
 
 def shines(thing, strength, color=(1.0, 0.9, 0.7)):
     tree = node_comparison.Tree(thing)

@@ -11,8 +11,6 @@ import pytest
 import scene_parts
 from scene_parts import set_world
 
-pytestmark = pytest.mark.lit
-
 COLOR, RADIUS = (0.8, 0.5, 0.3), (0.3, 0.15, 0.08)
 SIZE, BLOCK = 64, 8
 

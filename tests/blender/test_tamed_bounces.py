@@ -8,8 +8,6 @@ from bounced_parts import look_at_stage, met_by_chance, render_bounced, surface,
 from mathutils import Vector
 from node_comparison import Tree
 
-pytestmark = pytest.mark.lit
-
 
 def lamp_towards(scene, place, target, energy, size):
     lamp = bpy.data.lights.new("Lamp", "AREA")

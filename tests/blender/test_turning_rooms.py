@@ -51,7 +51,6 @@ def room(scene):
     return scene
 
 
-@pytest.mark.lit
 @pytest.mark.parametrize("angle", [0.0, 0.1, 0.3, 0.6])
 @pytest.mark.parametrize("goes_along", [False, True])
 @pytest.mark.parametrize("threshold", [0.1, 1000.0])

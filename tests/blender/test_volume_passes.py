@@ -17,8 +17,6 @@ from test_volumes import (
     turned_cube,
 )
 
-pytestmark = pytest.mark.lit
-
 PASSES = {  # name before Blender 5: since
     "VolumeDir": "Volume Direct",
     "VolumeInd": "Volume Indirect",

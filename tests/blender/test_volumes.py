@@ -11,8 +11,6 @@ import pytest
 import scene_parts
 from test_subsurface import lamp
 
-pytestmark = pytest.mark.lit
-
 SIZE, BLOCK = 64, 8
 
 

@@ -7,8 +7,6 @@ import numpy as np
 import pytest
 import scene_parts
 
-pytestmark = pytest.mark.lit
-
 OUTPUTS = [
     ("ShaderNodeTexCoord", "Generated"),
     ("ShaderNodeTexCoord", "Normal"),
