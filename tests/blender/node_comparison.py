@@ -87,17 +87,18 @@ def render_both(scene, render, samples=1, channels="RGB"):
     cycles.use_adaptive_sampling = False
     cycles.pixel_filter_type = "BOX"
     cycles.max_bounces = 0
-    theirs = _combined(render(scene, "cycles"), channels)
+    theirs = combined(render(scene, "cycles"), channels)
     scene.render.engine = "GRANITA"
     scene.granita.samples = samples
     scene.granita.dicing_rate = 0.5  # the node is compared, not the interpolation between vertices
     scene.granita.pixel_filter = "BOX"
     scene.granita.filter_width = 1.0
-    ours = _combined(render(scene, "granita"), channels)
+    ours = combined(render(scene, "granita"), channels)
     return theirs, ours
 
 
-def _combined(passes, channels):
+def combined(passes, channels="RGB"):
+    """[height, width, channels] of the first layer."""
     layer = [name for name in passes if name.endswith("Combined.R")][0][:-1]
     return np.stack([passes[layer + c] for c in channels], axis=-1)
 

@@ -5,13 +5,9 @@ import bpy
 import numpy as np
 import pytest
 import scene_parts as parts
-from node_comparison import render_both
+from node_comparison import combined, render_both
 
 COLOR = (0.25, 0.5, 0.75)
-
-
-def combined(passes):
-    return np.stack([passes[f"ViewLayer.Combined.{c}"] for c in "RGBA"], axis=-1)
 
 
 @pytest.mark.parametrize("size", [(1, 5000), (5000, 1), (16384, 4), (4, 16384)], ids=str)
@@ -21,7 +17,7 @@ def test_frames_of_a_line(scene, render, size):
     # Blender's least resolution is 4, of which a quarter is rendered.
     scene.render.resolution_x, scene.render.resolution_y = (4 * side for side in size)
     scene.render.resolution_percentage = 25
-    image = combined(render(scene))
+    image = combined(render(scene), "RGBA")
     assert image.shape[:2] == size[::-1]
     np.testing.assert_allclose(image, np.broadcast_to((*COLOR, 1.0), image.shape), rtol=1e-6)
 
@@ -44,10 +40,10 @@ def _view(scene):
 def test_things_a_hundred_thousand_kilometres_away(scene, render):
     """Blender keeps places in single precision: 8 m of steps at 1e8 m, of which all here are multiples."""
     _view(scene)
-    here = combined(render(scene, "here"))
+    here = combined(render(scene, "here"), "RGBA")
     for name in ("Cube", "Camera"):
         scene.objects[name].location.x = scene.objects[name].location.y = 1e8
-    there = combined(render(scene, "there"))
+    there = combined(render(scene, "there"), "RGBA")
     assert here[..., 0].std() > 0.1
     # Places of the cube's surface in double precision, but matrices in single.
     assert np.abs(there - here).mean() < 2e-3
@@ -59,12 +55,12 @@ def test_faces_that_are_there_twice_are_there_once(scene, render):
     corners = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]
     once = parts.add_mesh(scene, "Once", corners, [(0, 1, 2, 3)], material=glow)
     once.rotation_euler = (0.3, 0.2, 0.7)
-    expected = combined(render(scene, "once"))
+    expected = combined(render(scene, "once"), "RGBA")
     twice = parts.add_mesh(scene, "Twice", 2 * corners, [(0, 1, 2, 3), (4, 5, 6, 7), (3, 2, 1, 0)])
     twice.data.materials.append(glow)
     twice.rotation_euler = once.rotation_euler
     bpy.data.objects.remove(once)
-    np.testing.assert_array_equal(combined(render(scene, "twice")), expected)
+    np.testing.assert_array_equal(combined(render(scene, "twice"), "RGBA"), expected)
 
 
 @pytest.mark.parametrize("scale", [(0, 1, 1), (1, 0, 1), (1e-6, 1e4, 1), (1, 1, 0)], ids=str)
@@ -74,13 +70,13 @@ def test_what_is_flattened_hides_no_other_pixel(scene, render, scale):
     parts.add_square(scene, material=parts.emission("Glow", COLOR)).rotation_euler = (0.3, 0.2, 0.7)
     matte = bpy.data.materials.new("Matte")
     parts.add_square(scene, size=20.0, location=(0, 0, -3), material=matte)
-    expected = combined(render(scene, "without"))
+    expected = combined(render(scene, "without"), "RGBA")
     bpy.ops.mesh.primitive_uv_sphere_add(location=(0, 0, -4))
     ball = bpy.context.object
     ball.scale = scale
     lamp = parts.add_object(scene, "Lamp", bpy.data.lights.new("Lamp", "AREA"))
     lamp.parent = ball
-    image = combined(render(scene, "with"))
+    image = combined(render(scene, "with"), "RGBA")
     # The ball is behind the matte square, which an area lamp behind it cannot light.
     np.testing.assert_array_equal(image, expected)
 

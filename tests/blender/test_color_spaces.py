@@ -7,7 +7,7 @@ import os
 import bpy
 import numpy as np
 import pytest
-from node_comparison import Tree, board, render_both, rmse
+from node_comparison import Tree, board, combined, render_both, rmse
 from scene_parts import add_object, set_world
 from test_images import exported, spaces
 from test_nodes_textures import saved_image, smooth_image, textured
@@ -259,8 +259,7 @@ def test_what_is_kept_between_frames_follows_the_working_space(scene, render, tm
     scene.render.use_persistent_data = True
 
     def picture():
-        passes = render(scene)
-        return np.stack([passes[f"ViewLayer.Combined.{c}"] for c in "RGB"], axis=-1)
+        return combined(render(scene))
 
     before = picture()
     work_in(space)

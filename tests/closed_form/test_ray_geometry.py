@@ -9,7 +9,6 @@ from test_bounces import material, mirror
 IOR = 1.5
 SIZE = 64
 LIMITS = {"glossy_bounces": 100, "transmission_bounces": 100, "clamp_indirect": 0.0}
-BLACK = (0, 0, 0, 1)
 
 
 def view(bounces, **options):
@@ -22,7 +21,7 @@ def glass(snapshot):
     return material(snapshot, [{"type": "ShaderNodeBsdfGlass", "inputs": inputs}], (0, "BSDF"))
 
 
-def solid(snapshot, outline, surface, **more):
+def solid(snapshot, outline, surface):
     """What stands on an outline in x and z, counter-clockwise where x goes right and z up, from y = -40 to 60."""
     n = len(outline)
     points = [(x, y, z) for y in (-40.0, 60.0) for x, z in outline]
@@ -32,7 +31,6 @@ def solid(snapshot, outline, surface, **more):
         points,
         [*sides, tuple(range(n)), tuple(range(2 * n - 1, n - 1, -1))],
         surface,
-        **more,
     )
 
 
@@ -41,11 +39,11 @@ def edge(snapshot, x, z):
     s.quad(snapshot, s.rectangle(x, -400, 4000, 400, z), s.emission(snapshot))
 
 
-def fresnel(cosine, ior=IOR):
+def fresnel(cosine):
     """What an unpolarized ray loses to reflection: (parallel + perpendicular) / 2."""
-    inner = np.sqrt(1 - (1 - cosine**2) / ior**2)
-    across = (cosine - ior * inner) / (cosine + ior * inner)
-    along = (ior * cosine - inner) / (ior * cosine + inner)
+    inner = np.sqrt(1 - (1 - cosine**2) / IOR**2)
+    across = (cosine - IOR * inner) / (cosine + IOR * inner)
+    along = (IOR * cosine - inner) / (IOR * cosine + inner)
     return (across**2 + along**2) / 2
 
 

@@ -25,8 +25,8 @@ def test_micropolygons_follow_the_area(height, apex):
     assert result["statistics"]["micropolygons"] < 100 * LENGTH + 4 * area
 
 
-def strips(snapshot, rows, surface, at=lambda x, y: (x, y, 1.0), **more):
-    """A rectangle in rows of a quad each, cut into three triangles from the middle of every second side."""
+def strips(snapshot, rows, at=lambda x, y: (x, y, 1.0), **more):
+    """A rectangle that glows, in rows of a quad each, cut into three triangles from the middle of every second side."""
     points, faces = [], []
     for row in range(rows):
         y0, y1 = HEIGHT * row / rows, HEIGHT * (row + 1) / rows
@@ -34,13 +34,13 @@ def strips(snapshot, rows, surface, at=lambda x, y: (x, y, 1.0), **more):
         places = [(5, y0), (WIDTH - 5, y0), (WIDTH - 5, y1), (WIDTH * 0.47, y1), (5, y1)]
         points += [at(*place) for place in places]
         faces += [tuple(first + i for i in face) for face in ((0, 1, 3), (1, 2, 3), (0, 3, 4))]
-    s.mesh(snapshot, points, faces, surface, **more)
+    s.mesh(snapshot, points, faces, s.emission(snapshot), **more)
 
 
 @pytest.mark.parametrize("rows", [7, 48, 137])
 def test_no_light_passes_between_them(executor, rows):
     snapshot = s.orthographic((WIDTH, HEIGHT), samples=16, executor=executor)
-    strips(snapshot, rows, s.emission(snapshot))
+    strips(snapshot, rows)
     assert np.all(s.alpha(snapshot)[:, 6:-6] == 1.0)
 
 
@@ -51,7 +51,7 @@ def test_nor_where_they_move_and_lie_at_a_slant(executor):
     def floor(x, y):
         return (x - WIDTH / 2) * 0.4, 2.0 + 0.02 * y, 3.0 + y
 
-    strips(snapshot, 90, s.emission(snapshot), floor, transforms=moves)
+    strips(snapshot, 90, floor, transforms=moves)
     alpha = s.alpha(snapshot)
     # Rows that the floor fills at all times, from y = 2 at z = 3 to y = 2.96 at z = 51.
     assert np.all(alpha[40:, 20:-20] == 1.0) and alpha[:28].max() == 0.0
