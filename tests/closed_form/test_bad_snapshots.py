@@ -1,18 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a snapshot must not hold is refused by an error that names the datablock and what is wrong with it."""
 
-import ast
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 import snapshots as s
+from process_parts import HERE, last_printed
 
 import granita_core
-
-DAMAGED = Path(__file__).resolve().parent / "damaged_parts.py"
 
 
 def wrong(path, value):
@@ -54,10 +48,5 @@ def test_it_is_refused_by_name(path, value, says):
 
 def test_none_of_a_few_damaged_by_chance_ends_the_process():
     """`./dev bench damaged_snapshots` is the same by the hundred thousands."""
-    run = subprocess.run(
-        [sys.executable, str(DAMAGED), "0", "300"], capture_output=True, text=True, timeout=600
-    )
-    *_, last = run.stdout.strip().split("\n")
-    assert run.returncode == 0, f"number {last}: {run.stderr[-2000:]}"
-    ends = ast.literal_eval(last)
+    ends = last_printed(HERE / "damaged_parts.py", 0, 300)
     assert ends["refused"] > 30 and ends["rendered"] > 30

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A frame for which memory does not suffice ends by itself and says what took it."""
 
-import ast
-import os
 import shutil
 import subprocess
 import sys
@@ -11,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import snapshots as s
+from process_parts import HERE, last_printed, printed
+from test_volumes import box
 
-HERE = Path(__file__).resolve().parent
 # In a process of its own: what others have freed would be used first.  getrusage(2) would tell of
 # the process that began it too.
 SCRIPT = f"""
@@ -63,11 +62,7 @@ def large():
 
 def outcome(before):
     """(what the frame said, MiB that it took at most)"""
-    run = subprocess.run(
-        [sys.executable, "-c", SCRIPT.format(before)], capture_output=True, text=True, timeout=300
-    )
-    assert run.returncode == 0, run.stderr
-    said, _, most = run.stdout.rpartition("most")
+    said, _, most = printed("-c", SCRIPT.format(before)).rpartition("most")
     return said, int(most)
 
 
@@ -93,6 +88,27 @@ def test_a_frame_ends_where_the_system_gives_no_more(more):
     assert said.startswith("Error the system gives no more memory")
 
 
+def beyond_the_horizon():
+    """A box some of whose corners are so far away that its faces run across the frame and out of any measure."""
+    snapshot = s.perspective((8, 6), 10.0, samples=2, threads=1)
+    box(snapshot, (0, -1, 4), (1, 1, 5), s.emission(snapshot))
+    points = snapshot["geometries"][0]["points"]
+    points[0, 0, 1] = points[0, 5, 0] = points[0, 6, 2] = 1e12
+    return s.packed(snapshot)
+
+
+def test_what_lies_beyond_the_horizon_waits_for_its_turn():
+    """All of its pieces at once were more than a GiB; a cancel after half a second finds it alive."""
+    script = f"""
+import sys, resource
+sys.path.insert(0, {str(HERE)!r})
+import damaged_parts, test_memory
+resource.setrlimit(resource.RLIMIT_DATA, (1 << 30, 1 << 30))
+print(repr(damaged_parts.outcome(test_memory.beyond_the_horizon())))
+"""
+    assert last_printed("-c", script) in ("cancelled", "rendered")
+
+
 @pytest.mark.parametrize("memory", [1 << 20, 1 << 30])
 def test_no_bit_depends_on_a_limit_that_suffices(memory):
     def picture(**options):
@@ -114,14 +130,6 @@ def test_any_allocation_may_fail(tmp_path):
     library = tmp_path / "failing_new.so"
     source = HERE / "failing_new.cpp"
     subprocess.run(["c++", "-O2", "-shared", "-fPIC", "-o", library, source], check=True)
-    run = subprocess.run(
-        [sys.executable, str(HERE / "failing_frames.py"), "101"],
-        capture_output=True,
-        text=True,
-        timeout=600,
-        env={**os.environ, "LD_PRELOAD": str(library)},
-    )
-    *_, last = run.stdout.strip().split("\n")
-    assert run.returncode == 0, f"allocation {last}: {run.stderr[-2000:]}"
-    ends = ast.literal_eval(last)
+    preload = {"LD_PRELOAD": str(library)}
+    ends = last_printed(HERE / "failing_frames.py", 101, more_environment=preload)
     assert ends["Error"] > 100
