@@ -11,12 +11,12 @@ HERE = Path(__file__).resolve().parent
 
 
 def printed(*arguments, more_environment=None):
-    """What Python prints that is run with `arguments`; it must end well, within ten minutes."""
+    """What Python prints that is run with `arguments`; it must end well, within five minutes."""
     run = subprocess.run(
         [sys.executable, *map(str, arguments)],
         capture_output=True,
         text=True,
-        timeout=600,
+        timeout=300,
         env={**os.environ, **(more_environment or {})},
     )
     assert run.returncode == 0, f"{run.stdout[-200:]}{run.stderr[-2000:]}"
