@@ -8,6 +8,7 @@ import bpy
 import crowd_scenes
 import frames
 import hero_scene
+import lit_scenes
 import numpy as np
 import scenes
 from figure_files import write_png
@@ -29,12 +30,9 @@ def clay():
 
 
 def plane(scene, name, size, place, surface):
-    """A square with UVs; `surface`: its material, or None."""
-    bpy.ops.mesh.primitive_plane_add(size=size, location=place)
-    item = bpy.context.object
-    item.name = name
-    if surface:
-        item.data.materials.append(surface)
+    """A square with UVs."""
+    item = lit_scenes.plane(scene, name, surface, size / 2, place)
+    item.data.uv_layers.new()
     return item
 
 
@@ -75,8 +73,6 @@ def textured_planes(columns, count, size, step, side):
         for file in files[1:]:
             shutil.copy(files[0], file)
     scene = lit(960)
-    carrier = plane(scene, "Plane", size, (0, 0, 0), None).data
-    bpy.data.objects.remove(bpy.data.objects["Plane"])
     rows = count // columns
     for i, file in enumerate(files):
 
@@ -87,10 +83,8 @@ def textured_planes(columns, count, size, step, side):
             return node.outputs[0]
 
         surface = scenes.material(file.stem, "ShaderNodeBsdfDiffuse", (1, 1, 1), textured)
-        mesh = carrier.copy()
-        mesh.materials.append(surface)
         place = i % columns - (columns - 1) / 2, i // columns - rows / 2 + 0.5
-        scenes.add(scene, file.stem, mesh).location = (step * place[0], step * place[1], 0)
+        plane(scene, file.stem, size, (step * place[0], step * place[1], 0), surface)
     return scene
 
 

@@ -76,9 +76,9 @@ void Patch::measure() {
 /// and halved (Rivara 1984), until a half has a short base.  What fits into a grid is not halved
 /// for.
 Patch::Base Patch::best_base() const {
-    if (!m_sides[kTop].collapsed) return {};
-    if (m_sides[kBottom].collapsed || m_sides[kRight].collapsed || m_sides[kLeft].collapsed)
-        return {};
+    const bool is_triangle = m_sides[kTop].collapsed && !m_sides[kBottom].collapsed &&
+                             !m_sides[kRight].collapsed && !m_sides[kLeft].collapsed;
+    if (!is_triangle) return {};
     const Projection& projection = m_mesh->view().projection;
     Vec2d corner[3];
     EdgePoint point;

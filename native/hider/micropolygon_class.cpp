@@ -5,6 +5,7 @@
 
 #include "hider/micropolygon.h"
 #include "math/point_span.h"
+#include "math/saturate.h"
 
 namespace granita {
 namespace {
@@ -29,7 +30,7 @@ OpacityBounds opacity_bounds(const Grid& grid, const Grid::Corners& c) {
         float sum = 0.0f;
         for (int channel = 0; channel < 3; ++channel) {
             const float x = grid.opacity[v][channel];
-            const float a = x > 0.0f ? std::min(x, 1.0f) : 0.0f;  // not a number: clear
+            const float a = saturate(x);
             bounds.least = std::min(bounds.least, a);
             sum += a;
         }

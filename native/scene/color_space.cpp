@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "math/observer.h"
+#include "math/saturate.h"
 #include "math/srgb.h"
 
 namespace granita {
@@ -46,8 +47,7 @@ Vec3f look_up_cube(const ColorSpace& space, const Vec3f& color) {
     std::size_t steps[3];
     Vec3f part;
     for (int k = 0, step = 1; k < 3; ++k, step *= space.cube_size) {
-        const float place =
-            (color[k] > 0.0f ? std::min(color[k], 1.0f) : 0.0f) * static_cast<float>(last);
+        const float place = saturate(color[k]) * static_cast<float>(last);
         const int at = std::min(static_cast<int>(place), last - 1);
         part[k] = place - static_cast<float>(at);
         steps[k] = static_cast<std::size_t>(step);

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import scene_parts as parts
 from node_comparison import combined, render_both
+from test_nodes_shaders import sun
 
 COLOR = (0.25, 0.5, 0.75)
 
@@ -24,9 +25,7 @@ def test_frames_of_a_line(scene, render, size):
 
 def _view(scene):
     """A hundred metres of a cube that leans, lit by a sun, with a camera that comes along."""
-    sun = bpy.data.lights.new("Sun", "SUN")
-    sun.energy, sun.angle = 3.0, 0.0
-    parts.add_object(scene, "Sun", sun).rotation_euler = (0.5, 0.4, 0.0)
+    sun(scene, (0.5, 0.4, 0.0))
     bpy.ops.mesh.primitive_cube_add(size=100.0)
     cube = bpy.context.object
     cube.rotation_euler = (0.3, 0.5, 0.2)

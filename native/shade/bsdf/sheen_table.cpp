@@ -3,13 +3,13 @@
 
 #include <algorithm>
 
+#include "math/saturate.h"
+
 namespace granita {
 
 SheenFit sheen_fit(float cosine, float roughness) {
     constexpr int kSide = kSheenTableSide, kLast = kSide - 1;
-    // What is no number counts as the least.
-    const float x = (cosine > 0.0f ? std::min(cosine, 1.0f) : 0.0f) * kLast,
-                y = (roughness > 1e-3f ? std::min(roughness, 1.0f) : 1e-3f) * kLast;
+    const float x = saturate(cosine) * kLast, y = std::max(saturate(roughness), 1e-3f) * kLast;
     const int column = std::min(static_cast<int>(x), kLast - 1),
               row = std::min(static_cast<int>(y), kLast - 1);
     const float u = x - static_cast<float>(column), v = y - static_cast<float>(row);

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "math/saturate.h"
+
 namespace granita {
 
 /// A function of the unit cube, linear between 16 values along each side.
@@ -22,8 +24,7 @@ class UnitCubeTable {
         std::array<int, 3> cell{};
         std::array<float, 3> t{};
         for (int a = 0; a < 3; ++a) {
-            // What is no number counts as 0.
-            const float p = (place[a] > 0.0f ? std::min(place[a], 1.0f) : 0.0f) * (kSize - 1);
+            const float p = saturate(place[a]) * (kSize - 1);
             cell[a] = std::min(static_cast<int>(p), kSize - 2);
             t[a] = p - static_cast<float>(cell[a]);
         }

@@ -17,7 +17,7 @@ using Table = std::shared_ptr<const std::vector<float>>;
 float look_up(const std::vector<float>& table, int width, int component, float place,
               bool interpolate) {
     const int last = static_cast<int>(table.size()) / width - 1;
-    const float x = (place > 0.0f ? std::min(place, 1.0f) : 0.0f) * static_cast<float>(last);
+    const float x = saturate(place) * static_cast<float>(last);
     const int i = std::min(static_cast<int>(x), last);
     const float t = x - static_cast<float>(i);
     const float before = table[i * width + component];

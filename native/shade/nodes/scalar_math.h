@@ -6,12 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace granita {
+#include "math/saturate.h"
 
-/// Into [0, 1]; what is no number becomes 0.
-inline float saturate(float x) {
-    return x > 0.0f ? std::min(x, 1.0f) : 0.0f;
-}
+namespace granita {
 
 inline float safe_divide(float a, float b) {
     return b != 0.0f ? a / b : 0.0f;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "math/saturate.h"
 #include "shade/nodes/nodes.h"
 
 namespace granita {
@@ -21,7 +22,7 @@ VectorSource spectrum_color(NodeBuilder& b, const char* input) {
             const std::size_t segments = table->size() / 3 - 1;
             const auto last = static_cast<float>(segments);
             const float part = (x - low) / (high - low);
-            const float place = (part > 0.0f ? std::min(part, 1.0f) : 0.0f) * last;
+            const float place = saturate(part) * last;
             const auto i = static_cast<std::size_t>(std::min(place, last - 1.0f));
             const float t = place - static_cast<float>(i);
             const float* c = table->data() + 3 * i;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "math/saturate.h"
+
 namespace granita {
 
 namespace {
@@ -228,8 +230,7 @@ float part_of_parts(const TextureMode& mode, const TexturePlace& place) {
     if (mode.extension == TextureExtension::Extend) return 1.0f;
     if (mode.extension != TextureExtension::Clip) return 0.0f;
     const Vec2f width = glm::abs(place.along_u) + glm::abs(place.along_v);
-    const float more = std::max(width.x, width.y) - 1.0f;
-    return more > 0.0f ? std::min(more, 1.0f) : 0.0f;
+    return saturate(std::max(width.x, width.y) - 1.0f);
 }
 
 TextureFootprint footprint_of(const Vec2f& size, const TexturePlace& place) {
