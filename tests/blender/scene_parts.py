@@ -137,6 +137,14 @@ def emission(name, color, strength=1.0):
     return closure(name, "ShaderNodeEmission", Color=(*color, 1.0), Strength=strength)
 
 
+def add_aov_output(material, name, color=(0.0, 0.0, 0.0), value=0.0):
+    """Its name is the node's own before Blender 4."""
+    node = material.node_tree.nodes.new("ShaderNodeOutputAOV")
+    setattr(node, "aov_name" if hasattr(node, "aov_name") else "name", name)
+    node.inputs["Color"].default_value = (*color, 1.0)
+    node.inputs["Value"].default_value = value
+
+
 def set_terminator_offset(thing, offset):
     """Geometry Offset: an object's own since Blender 4.3, of Cycles' add-on before."""
     name = "shadow_terminator_geometry_offset"

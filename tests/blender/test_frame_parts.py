@@ -33,12 +33,7 @@ def rich(scene):
     scene.render.use_motion_blur = True
     parts.add_camera(scene, ortho_scale=5.0)
     glow = parts.emission("Glow", (0.25, 0.5, 0.75))
-    output = glow.node_tree.nodes.new("ShaderNodeOutputAOV")
-    output.inputs["Value"].default_value = 0.5
-    if hasattr(output, "aov_name"):
-        output.aov_name = "Mask"
-    else:
-        output.name = "Mask"
+    parts.add_aov_output(glow, "Mask", value=0.5)
     moving = parts.add_square(scene, "Moving", 1.5, (0.0, 0.3, 0.5), glow)
     for frame in (0, 2):
         moving.location.x = frame - 1.0

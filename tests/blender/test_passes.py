@@ -31,16 +31,6 @@ NAMES = {  # the view layer's property: (name before Blender 5, since, channels)
 }
 
 
-def add_aov_output(material, name, color, value):
-    node = material.node_tree.nodes.new("ShaderNodeOutputAOV")
-    if hasattr(node, "aov_name"):
-        node.aov_name = name
-    else:
-        node.name = name
-    node.inputs["Color"].default_value = (*color, 1.0)
-    node.inputs["Value"].default_value = value
-
-
 def set_stage(scene):
     camera = scene_parts.add_camera(scene, (0.0, -6.0, 4.0))
     camera.rotation_euler = (math.radians(60.0), 0.0, 0.0)
@@ -106,8 +96,8 @@ def pair(scene, render):
     for name, kind in (("Tint", "COLOR"), ("Mask", "VALUE")):
         aov = layer.aovs.add()
         aov.name, aov.type = name, kind
-    add_aov_output(materials[1], "Tint", (0.25, 0.5, 2.0), 0.0)
-    add_aov_output(materials[0], "Mask", (0.0, 0.0, 0.0), 3.0)
+    scene_parts.add_aov_output(materials[1], "Tint", (0.25, 0.5, 2.0), 0.0)
+    scene_parts.add_aov_output(materials[0], "Mask", (0.0, 0.0, 0.0), 3.0)
     return scene_parts.direct_light_of_both(scene, render, 100)
 
 

@@ -62,7 +62,9 @@ def test_flips_change_both_pictures_alike_or_are_told(scene, session, samples, p
     if not subjects:
         pytest.skip("its subjects are another probe's turn, or not in this Blender")
     judge = Judge(session, probe)
-    verdicts = [record for tried in subjects for record in _judged(judge, tried)]
+    # What is unchanged, too: beside a picture that failed every flip would be alike.
+    verdicts = [judge.baseline().record()]
+    verdicts += [record for tried in subjects for record in _judged(judge, tried)]
     faults = [v for v in verdicts if v["verdict"] in FAULTS and not exceptions.listed(v, table)]
     assert not faults, faults
 

@@ -62,11 +62,8 @@ def test_a_view_shows_an_output_of_materials_as_the_final_frame_has_it(scene, vi
     layer = bpy.context.view_layer
     made = layer.aovs.add()
     made.name, made.type = "Emission", kind
-    tree = bpy.data.objects["Thing"].data.materials[0].node_tree
-    node = tree.nodes.new("ShaderNodeOutputAOV")
-    setattr(node, "name" if not hasattr(node, "aov_name") else "aov_name", "Emission")
-    node.inputs["Color"].default_value = (0.25, 0.5, 0.75, 1)
-    node.inputs["Value"].default_value = 0.625
+    material = bpy.data.objects["Thing"].data.materials[0]
+    parts.add_aov_output(material, "Emission", (0.25, 0.5, 0.75), 0.625)
     if hasattr(scene, "cycles"):
         scene.cycles.film_exposure = 0.5
     shading = view.space.shading.granita

@@ -109,6 +109,42 @@ print(repr(damaged_parts.outcome(test_memory.beyond_the_horizon())))
     assert last_printed("-c", script) in ("cancelled", "rendered")
 
 
+def painted(images=20):
+    """A row of squares, each with an image of its own of 64 x 64 texels."""
+    snapshot = s.orthographic((8 * images, 8), samples=1, threads=2)
+    texels = np.random.default_rng(5).integers(0, 256, (images, 64, 64, 4)).astype(np.uint8)
+    snapshot["images"] = [
+        {"name": f"Image {i}", "bytes": texels[i], "colorspace": "sRGB"} for i in range(images)
+    ]
+    for i in range(images):
+        paint = s.emission(snapshot)
+        material = snapshot["materials"][paint]
+        texture = {"type": "ShaderNodeTexImage", "properties": {"image": f"Image {i}"}}
+        emission = material["nodes"][0]
+        emission["inputs"]["Color"] = s.link(0, "Color")
+        material.update(nodes=[{**texture, "inputs": {}}, emission], surface=(1, "Emission"))
+        s.quad(snapshot, s.rectangle(8 * i, 0, 8 * i + 8, 8), paint)
+    return snapshot
+
+
+def test_nothing_outlives_the_frames_of_an_animation():
+    """Of 40 images under new names in each of 714 frames 35 MB stayed, and frames took twice as long at the end."""
+    script = f"""
+import sys
+sys.path.insert(0, {str(HERE)!r})
+from test_memory import megabytes, painted
+import granita_core
+held = []
+for count in (100, 400):
+    for _ in range(count):
+        granita_core.render(painted())
+    held.append(megabytes())
+print(held)
+"""
+    early, late = last_printed("-c", script)
+    assert late - early <= 3  # 7 would be left of as many images and frames
+
+
 @pytest.mark.parametrize("memory", [1 << 20, 1 << 30])
 def test_no_bit_depends_on_a_limit_that_suffices(memory):
     def picture(**options):

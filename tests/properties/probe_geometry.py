@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 import scene_parts
 import stage
+import unwalked
 from mathutils import Matrix
 from probe import Probe
 
@@ -130,12 +131,6 @@ def _points(scene):
     return {"object": thing}
 
 
-MODIFIERS_UNREAD = frozenset(
-    """is_active show_expanded show_in_editmode show_on_cage show_viewport use_apply_on_spline execution_time
-    use_pin_to_last persistent_uid""".split()
-)
-
-
 def _modified(kind):
     def build(scene):
         _shown(scene)
@@ -195,25 +190,20 @@ def _rendered_modifiers():
     return [item.identifier for item in items if item.identifier in wanted]
 
 
-_DATA_UNREAD = frozenset(
-    """use_mirror_topology use_mirror_vertex_groups use_mirror_x use_mirror_y use_mirror_z use_paint_mask
-    use_paint_mask_vertex use_paint_bone_selection remesh_mode remesh_voxel_adaptivity remesh_voxel_size
-    use_remesh_fix_poles use_remesh_preserve_attributes use_remesh_preserve_paint_mask
-    use_remesh_preserve_sculpt_face_sets use_remesh_preserve_vertex_colors use_remesh_preserve_volume select hide
-    select_x select_y loop_start loop_total update_method body body_format edit_format follow_curve""".split()
-)
+_MESHES = unwalked.names("meshes")
+_MODIFIERS = unwalked.names("modifiers")
 
 
 def probes():
     found = [
-        Probe("mesh", _mesh, ("mesh", "face", "vertex", "edge", "uv layer"), {}, _DATA_UNREAD),
-        Probe("curve", _curve("CURVE"), ("data",), {}, _DATA_UNREAD),
-        Probe("text", _curve("FONT"), ("data",), {}, _DATA_UNREAD),
-        Probe("metaball", _curve("META"), ("data",), {}, _DATA_UNREAD),
-        Probe("hair curves", _hair_curves, ("data", "scene.cycles_curves"), _SCALES, _DATA_UNREAD),
+        Probe("mesh", _mesh, ("mesh", "face", "vertex", "edge", "uv layer"), {}, _MESHES),
+        Probe("curve", _curve("CURVE"), ("data",), {}, _MESHES),
+        Probe("text", _curve("FONT"), ("data",), {}, _MESHES),
+        Probe("metaball", _curve("META"), ("data",), {}, _MESHES),
+        Probe("hair curves", _hair_curves, ("data", "scene.cycles_curves"), _SCALES, _MESHES),
         Probe("point cloud", _points, (), _SCALES),
     ]
     for kind in _rendered_modifiers():
         walked = ("modifier", "mesh.cycles") if kind == "SUBSURF" else ("modifier",)
-        found.append(Probe(f"modifier {kind}", _modified(kind), walked, {}, MODIFIERS_UNREAD))
+        found.append(Probe(f"modifier {kind}", _modified(kind), walked, {}, _MODIFIERS))
     return found

@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 import scene_parts
 import stage
+import unwalked
 from probe import Probe
 
 _FOLDER = tempfile.mkdtemp(prefix="granita-images-")
@@ -85,16 +86,12 @@ def _environment(scene):
     return {"image": texture.image, "node": texture, "scene": scene}
 
 
-# What only an image editor shows, or what leads to no picture at all.
-_UNREAD = frozenset(
-    """active_renderlayer_index file_format filepath filepath_raw display_aspect gl_load use_half_precision
-    use_deinterlace use_multiview views_format use_view_as_render seam_margin mute""".split()
-)
+_IMAGES = unwalked.names("images")
 
 PROBES = [
-    Probe("image, PNG", _png, ("image", "node"), {}, _UNREAD),
-    Probe("image, OpenEXR", _exr, ("image",), {}, _UNREAD),
-    Probe("image, generated", _generated, ("image",), {}, _UNREAD),
-    Probe("image, sequence", _sequence, ("image", "node"), {}, _UNREAD),
-    Probe("image, environment", _environment, ("image", "node"), {}, _UNREAD),
+    Probe("image, PNG", _png, ("image", "node"), {}, _IMAGES),
+    Probe("image, OpenEXR", _exr, ("image",), {}, _IMAGES),
+    Probe("image, generated", _generated, ("image",), {}, _IMAGES),
+    Probe("image, sequence", _sequence, ("image", "node"), {}, _IMAGES),
+    Probe("image, environment", _environment, ("image", "node"), {}, _IMAGES),
 ]

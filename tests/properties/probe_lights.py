@@ -50,7 +50,7 @@ _LINKING = {
     "light linking": _second_collection("receiver_collection"),
     "shadow linking": _second_collection("blocker_collection"),
 }
-_OBJECT = frozenset({"data"})
+_OBJECT = frozenset({"data"})  # another kind of lamp is another probe
 
 PROBES = [
     Probe("point light", _lamp("POINT"), ("light", "object"), _LINKING, _OBJECT),

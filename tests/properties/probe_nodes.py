@@ -7,8 +7,9 @@ import bpy
 import numpy as np
 import scene_parts
 import stage
+import unwalked
 from probe import Probe
-from walk import UNREAD_PROPERTIES, can_be_flipped
+from walk import can_be_flipped
 
 # What is no node of a material, or needs a file or a language of its own.
 _LEFT_OUT = {
@@ -215,7 +216,7 @@ def _opening_modes(node):
     for rna in node.bl_rna.properties:
         if rna.type != "ENUM" or rna.is_readonly or rna.is_enum_flag:
             continue
-        if rna.identifier in UNREAD_PROPERTIES:
+        if rna.identifier in unwalked.names("names"):
             continue
         before = getattr(node, rna.identifier)
         for item in rna.enum_items:
@@ -234,20 +235,16 @@ def _open_inputs(node):
     return {place for place, socket in enumerate(node.inputs) if can_be_flipped(socket)}
 
 
-_LEFT = frozenset(
-    {"image", "mute", "bytecode", "bytecode_hash", "filepath", "script", "use_auto_update"}
-)
-
-
 def probes():
     """A probe for each node that this Blender has."""
     found = []
+    left_out = unwalked.names("node probes")
     for name in node_names():
-        found.append(Probe(name, _build(name), ("node",), _outputs(name), _LEFT, node=True))
+        found.append(Probe(name, _build(name), ("node",), _outputs(name), left_out, node=True))
         for label, known in (("rich", _RICH), ("clear", _CLEAR)):
             if name in known:
                 build = _build(name, known[name])
-                found.append(Probe(f"{name}, {label}", build, ("node",), {}, _LEFT, node=True))
+                found.append(Probe(f"{name}, {label}", build, ("node",), {}, left_out, node=True))
         for mode, opened in _modes(name).items():
             label = f"{name}, {mode[1]}"
             found.append(

@@ -4,20 +4,10 @@
 import bpy
 import scene_parts
 import stage
+import unwalked
 from probe import Probe
 
-# Of Blender's own evaluation, which both engines share, or of the 3D view: a few of each kind stay in.
-OBJECT_UNREAD = frozenset(
-    """active_material active_material_index active_shape_key_index add_rest_position_attribute display_bounds_type
-    display_type empty_display_size empty_display_type empty_image_depth empty_image_offset empty_image_side hide_select
-    hide_viewport lock_location lock_rotation lock_rotation_w lock_rotations_4d lock_scale mode show_all_edges show_axis
-    show_bounds show_empty_image_only_axis_aligned show_empty_image_orthographic show_empty_image_perspective
-    show_in_front show_instancer_for_viewport show_name show_only_shape_key show_texture_space show_transparent show_wire
-    track_axis up_axis use_camera_lock_parent use_dynamic_topology_sculpting use_empty_image_alpha use_grease_pencil_lights
-    use_mesh_mirror_x use_mesh_mirror_y use_mesh_mirror_z use_shape_key_edit_mode use_simulation_cache bound_box
-    delta_rotation_quaternion rotation_axis_angle rotation_quaternion matrix_basis matrix_local matrix_parent_inverse
-    matrix_world parent_bone parent_vertices proxy data""".split()
-)
+_OBJECTS = unwalked.names("objects")
 
 
 def _surroundings(scene, world=(0.2, 0.15, 0.3)):
@@ -161,25 +151,25 @@ def _edit_mode(roots):
 _DEEDS = {**{f"a {kind} is added": _add(kind) for kind in _MAKERS}, "is edited": _edit_mode}
 
 PROBES = [
-    Probe("object", _object, ("object",), _DEEDS, OBJECT_UNREAD),
-    Probe("moving object", _moving_object, ("object",), {}, OBJECT_UNREAD),
+    Probe("object", _object, ("object",), _DEEDS, _OBJECTS),
+    Probe("moving object", _moving_object, ("object",), {}, _OBJECTS),
     Probe("material", _material, ("material",)),
     Probe("material without nodes", _plain_material, ("material",)),
     Probe(
-        "collection instance", _collection_instance, ("object", "part", "inside"), {}, OBJECT_UNREAD
+        "collection instance", _collection_instance, ("object", "part", "inside"), {}, _OBJECTS
     ),
     Probe(
         "instances on vertices",
         _instancer("VERTS"),
         ("object", "inside"),
         _FROM_INSTANCER,
-        OBJECT_UNREAD,
+        _OBJECTS,
     ),
     Probe(
         "instances on faces",
         _instancer("FACES"),
         ("object", "inside"),
         _FROM_INSTANCER,
-        OBJECT_UNREAD,
+        _OBJECTS,
     ),
 ]

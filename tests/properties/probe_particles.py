@@ -3,22 +3,8 @@
 
 import bpy
 import stage
+import unwalked
 from probe import Probe
-
-# Of simulation and editing: Blender evaluates them, both engines are given what comes out.
-PARTICLES_UNREAD = frozenset(
-    """active_texture_index adaptive_angle adaptive_pix adaptive_subframes angular_velocity_factor angular_velocity_mode
-    apply_effector_to_children apply_guide_to_children bending_random boids brownian_factor collision_collection
-    courant_target damping display_color display_method display_percentage display_size display_step drag_factor
-    effect_hair effector_amount factor_random force_field_1 force_field_2 fluid integrator keyed_loops keys_step
-    is_fluid lifetime lifetime_random mass normal_factor object_align_factor object_factor particle_factor path_end
-    path_start phase_factor phase_factor_random react_event rotation_factor_random rotation_mode show_guide_hairs
-    show_hair_grid show_health show_number show_size show_unborn show_velocity subframes tangent_factor
-    tangent_phase time_tweak timestep trail_count use_adaptive_subframes use_advanced_hair use_die_on_collision
-    use_dynamic_rotation use_multiply_size_mass use_react_multiple use_react_start_end use_regrow_hair
-    use_self_effect use_size_deflect drag effector_weights""".split()
-)
-
 
 def _emitter(scene, kind):
     stage.set_world(scene, (0.1, 0.1, 0.1))
@@ -78,24 +64,16 @@ def _objects(render_type):
     return build
 
 
-_SYSTEM_UNREAD = frozenset(
-    {
-        "seed",
-        "child_seed",
-        "use_emit_random",
-        "settings",
-        "reactor_target_object",
-        "use_hair_dynamics",
-    }
-)
+_PARTICLES = unwalked.names("particles")
+_BOTH = unwalked.names("particles", "particle systems")
 _WALKED = ("settings", "system")
 
 PROBES = [
-    Probe("hair", _hair(False), _WALKED, {}, PARTICLES_UNREAD | _SYSTEM_UNREAD),
-    Probe("hair with children", _hair(True), ("settings",), {}, PARTICLES_UNREAD),
+    Probe("hair", _hair(False), _WALKED, {}, _BOTH),
+    Probe("hair with children", _hair(True), ("settings",), {}, _PARTICLES),
     Probe(
-        "particles as objects", _objects("OBJECT"), _WALKED, {}, PARTICLES_UNREAD | _SYSTEM_UNREAD
+        "particles as objects", _objects("OBJECT"), _WALKED, {}, _BOTH
     ),
-    Probe("particles as collections", _objects("COLLECTION"), ("settings",), {}, PARTICLES_UNREAD),
+    Probe("particles as collections", _objects("COLLECTION"), ("settings",), {}, _PARTICLES),
     Probe("particles as halos", _objects("HALO"), (), {}),
 ]

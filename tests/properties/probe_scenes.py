@@ -4,10 +4,8 @@
 import bpy
 import scene_parts
 import stage
+import unwalked
 from probe import Probe
-
-# Of the other engine's pass through the same scene; what a flip must not touch to be read at all.
-_ENGINE = frozenset({"engine", "filepath", "use_lock_interface", "granita"})
 
 
 def _stage(scene, blur=False):
@@ -57,6 +55,10 @@ def _passes(scene):
             setattr(layer, rna.identifier, True)
     scene.world.mist_settings.start, scene.world.mist_settings.depth = 3.0, 2.0
     roots["cube"].pass_index = 3
+    layer.aovs.add().name = "Mask"
+    scene_parts.add_aov_output(roots["cube"].data.materials[0], "Mask", (0.2, 0.4, 0.6), 0.5)
+    layer.lightgroups.add(name="Key")
+    scene.objects["Sun"].lightgroup = "Key"
     roots["mist"] = scene.world.mist_settings
     return roots
 
@@ -121,34 +123,18 @@ def _is_empty(roots):
     roots["scene"].camera = empty
 
 
-SCENE_UNREAD = frozenset(
-    # Playback, editing, sound and files: nothing of the picture.
-    """active_clip active_layer audio_channels audio_codec audio_distance_model audio_doppler_factor audio_doppler_speed
-    audio_mixrate audio_volume frame_preview_end frame_preview_start show_keys_from_selected_only show_subframe
-    simulation_frame_end simulation_frame_start sync_mode use_audio use_audio_scrub use_audio_sync use_custom_simulation_range
-    use_preview_range lock_frame_selection_to_range cycles_curves fps fps_base frame_map_new frame_map_old
-    metadata_input use_file_extension use_overwrite use_placeholder use_render_cache use_stamp use_stamp_camera
-    use_stamp_date use_stamp_filename use_stamp_frame use_stamp_frame_range use_stamp_hostname use_stamp_labels
-    use_stamp_lens use_stamp_marker use_stamp_memory use_stamp_note use_stamp_render_time use_stamp_scene
-    use_stamp_sequencer_strip use_stamp_time stamp_background stamp_font_size stamp_foreground stamp_note_text
-    preview_pixel_size preview_start_resolution line_thickness line_thickness_mode use_spherical_stereo threads
-    threads_mode resolution_y compositor_device compositor_precision compositor_denoise_device
-    compositor_denoise_final_quality compositor_denoise_preview_quality sequencer_gl_preview
-    use_sequencer_override_scene_strip bake_bias bake_margin bake_margin_type bake_samples bake_type bake_user_scale
-    use_bake_clear use_bake_lores_mesh use_bake_multires use_bake_selected_to_active use_bake_user_scale
-    hair_subdiv hair_type use_freestyle use_high_quality_normals ppm_base ppm_factor""".split()
-)
+_SCENES = unwalked.names("engine", "scenes")
 
 PROBES = [
-    Probe("scene", _stage, ("scene", "render"), left_out=_ENGINE | SCENE_UNREAD),
-    Probe("blurred scene", lambda s: _stage(s, True), ("scene",), left_out=_ENGINE | SCENE_UNREAD),
+    Probe("scene", _stage, ("scene", "render"), left_out=_SCENES),
+    Probe("blurred scene", lambda s: _stage(s, True), ("scene",), left_out=_SCENES),
     Probe(
         "view layer",
         _with_override,
         ("view_layer", "layer_collection", "part"),
-        left_out=frozenset({"use"}),
+        left_out=unwalked.names("layers"),
     ),
-    Probe("passes", _passes, ("view_layer", "mist"), left_out=frozenset({"use"})),
+    Probe("passes", _passes, ("view_layer", "mist"), left_out=unwalked.names("layers")),
     Probe("world", _world, ("world", "background")),
     Probe(
         "camera, perspective", _camera("PERSP"), ("camera", "object"), {"is an empty": _is_empty}

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The other values of an RNA property: each item of an enum, the other state of a switch, both ends of a range.
+"""The other values of an RNA property: each item of an enum, the other state of a switch, both ends of a range, a
+name that nothing has.
 
 Soft limits are the ends, as sliders have them.  An end that lies further off than the value itself (or 1,
 or 40 degrees) is replaced by a value at that distance: a sphere of 10,000 metres shows nothing of itself.
@@ -30,6 +31,8 @@ def other_values(struct, rna):
     now = getattr(struct, rna.identifier)
     if kind == "ENUM":
         return _other_items(rna, now)
+    if kind == "STRING":
+        return _other_strings(now)
     if kind not in ("BOOLEAN", "INT", "FLOAT"):
         return []
     if getattr(rna, "is_array", False):
@@ -43,6 +46,11 @@ def _other_items(rna, now):
         choices = [set(), set(items)]
         return [("+".join(sorted(choice)) or "none", choice) for choice in choices if choice != now]
     return [(item, item) for item in items if item and item != now]
+
+
+def _other_strings(now):
+    """A name that nothing has, and none."""
+    return [("'Elsewhere'", "Elsewhere"), *([("''", "")] if now else [])]
 
 
 def _other_numbers(rna, now):

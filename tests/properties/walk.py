@@ -7,84 +7,11 @@ A flip is made anew from its probe each time, so that no flip sees another's tra
 from dataclasses import dataclass
 
 import bpy
+import unwalked
 from values import assign, other_values
 
-# Parts of a datablock that no render engine reads: the window's, other engines', simulation's, tools'.
-UNREAD_STRUCTS = {
-    "AnimData",
-    "AnimVizMotionPaths",
-    "AnimViz",
-    "AssetMetaData",
-    "BakeSettings",
-    "CameraBackgroundImage",
-    "Depsgraph",
-    "DopeSheet",
-    "FieldSettings",
-    "FFmpegSettings",
-    "IDMaterials",
-    "ImageFormatSettings",
-    "ImagePreview",
-    "Library",
-    "MaterialGPencilStyle",
-    "MaterialLineArt",
-    "ObjectDisplay",
-    "ObjectLineArt",
-    "RaytraceEEVEE",
-    "RigidBodyWorld",
-    "SceneDisplay",
-    "SceneEEVEE",
-    "SceneGpencil",
-    "SceneHydra",
-    "SequenceEditor",
-    "ShaderNodeTree",
-    "ToolSettings",
-    "TransformOrientationSlot",
-    "UnitSettings",
-    "View3DCursor",
-    "View3DShading",
-    "ViewLayerEEVEE",
-    "FreestyleSettings",
-}
-# Names and states of the interface, which every datablock or node has.
-UNREAD_PROPERTIES = {
-    "name",
-    "rna_type",
-    "tag",
-    "use_fake_user",
-    "use_extra_user",
-    "is_runtime_data",
-    "is_embedded_data",
-    "original",
-    "asset_data",
-    "bl_description",
-    "bl_height_default",
-    "bl_height_max",
-    "bl_height_min",
-    "bl_icon",
-    "bl_idname",
-    "bl_label",
-    "bl_static_type",
-    "bl_width_default",
-    "bl_width_max",
-    "bl_width_min",
-    "color_tag",
-    "height",
-    "hide",
-    "label",
-    "location_absolute",
-    "parent",
-    "select",
-    "show_options",
-    "show_preview",
-    "show_texture",
-    "use_custom_color",
-    "warning_propagation",
-    "width",
-    "width_hidden",
-}
-# The same for nodes alone: where they stand in the editor, and their own colour there.
-UNREAD_OF_NODES = {"location", "color"}
-_DEPTH = 3
+# Attributes below a root that are entered: `node.mapping.curves[0].points[0].location` is one of the deepest.
+_DEPTH = 4
 
 
 @dataclass(frozen=True)
@@ -136,44 +63,54 @@ def _struct_flips(probe, path, struct, seen):
     found = []
     for rna in struct.bl_rna.properties:
         name = rna.identifier
-        if name in _unread(struct, probe) or rna.is_hidden and kind.startswith("Cycles"):
+        if name in _unread(struct, path, probe) or rna.is_hidden and kind.startswith("Cycles"):
             continue
         if rna.type == "COLLECTION":
-            if name == "inputs" and isinstance(struct, bpy.types.Node):
-                found += _socket_flips(probe, path, struct)
+            found += _member_flips(probe, path, struct, rna, seen)
             continue
-        if rna.type == "POINTER" and rna.is_readonly:
-            found += _part_flips(probe, path, struct, rna, seen)
-            continue
-        if rna.is_readonly:
-            continue
-        for text, value in other_values(struct, rna):
-            found.append(Flip(probe.name, f"{kind}.{name}", text, path, name, value))
+        if not rna.is_readonly:
+            for text, value in other_values(struct, rna):
+                found.append(Flip(probe.name, f"{kind}.{name}", text, path, name, value))
         if rna.type == "POINTER":
-            found += _part_flips(probe, path, struct, rna, seen)
+            part = getattr(struct, name)
+            found += _part_flips(probe, (*path, name), part, name, seen)
     return found
 
 
-def _unread(struct, probe):
-    if isinstance(struct, (bpy.types.ID, bpy.types.Node)):
-        names = (
-            UNREAD_PROPERTIES - {"parent"}
-            if isinstance(struct, bpy.types.Object)
-            else UNREAD_PROPERTIES
-        )
-        if isinstance(struct, bpy.types.Node):
-            names = names | UNREAD_OF_NODES
-        return names | probe.left_out
-    return {"rna_type", "name"} | probe.left_out
+def _unread(struct, path, probe):
+    if isinstance(struct, bpy.types.Node):
+        return unwalked.names("names", "nodes") | probe.left_out
+    if isinstance(struct, bpy.types.Object):
+        return unwalked.names("names") - {"parent"} | probe.left_out
+    if isinstance(struct, bpy.types.ID):
+        return unwalked.names("names") | probe.left_out
+    # Parts go by their names: UV maps and attributes are looked up so.
+    is_member = isinstance(path[-1], int)
+    return probe.left_out | ({"rna_type"} if is_member else {"rna_type", "name"})
 
 
-def _part_flips(probe, path, struct, rna, seen):
-    part = getattr(struct, rna.identifier)
-    if part is None or isinstance(part, bpy.types.ID) or len(path) > _DEPTH:
+def _part_flips(probe, path, part, name, seen):
+    if part is None or isinstance(part, bpy.types.ID) or name in seen:
         return []
-    if part.bl_rna.identifier in UNREAD_STRUCTS or rna.identifier in seen:
+    if sum(isinstance(step, str) for step in path) > _DEPTH + 1:
         return []
-    return _struct_flips(probe, (*path, rna.identifier), part, seen | {rna.identifier})
+    if part.bl_rna.identifier in unwalked.names("structs"):
+        return []
+    return _struct_flips(probe, path, part, seen | {name})
+
+
+def _member_flips(probe, path, struct, rna, seen):
+    """Of a collection's first member and its last."""
+    name = rna.identifier
+    if name == "inputs" and isinstance(struct, bpy.types.Node):
+        return _socket_flips(probe, path, struct)
+    if name in unwalked.names("collections"):
+        return []
+    members = getattr(struct, name)
+    found = []
+    for place in sorted({0, len(members) - 1}) if len(members) else ():
+        found += _part_flips(probe, (*path, name, place), members[place], name, seen)
+    return found
 
 
 def can_be_flipped(socket):
