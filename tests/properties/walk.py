@@ -34,7 +34,12 @@ class Flip:
         """Makes the change; whether there was one."""
         if not self.path:
             return probe.deeds[self.name](roots) is not False
-        return assign(find(roots, self.path), self.name, self.value)
+        is_taken = assign(find(roots, self.path), self.name, self.value)
+        for steps in range(1, len(self.path)):
+            struct = find(roots, self.path[:steps])
+            if isinstance(struct, bpy.types.CurveMapping):
+                struct.update()  # as its editor does
+        return is_taken
 
 
 def find(roots, path):

@@ -38,10 +38,16 @@ TEST_P(Lifespans, StillSquareCoversItsShareOfTheShutter) {
             const Picture p = render(GetParam(), shot);
             const double share = std::min(life.close, 1.0f) - life.open;
             const int ends = (life.open > 0) + (life.close < 1);
+            double mean = 0;
             for (int y = 0; y < 16; ++y)
-                for (int x = 0; x < 16; ++x)
+                for (int x = 0; x < 16; ++x) {
                     EXPECT_NEAR(p.alpha(x, y), share, 1e-6 + static_cast<double>(ends) / strata)
                         << life.open;
+                    mean += p.alpha(x, y) / 256;
+                }
+            // Pixels of their own times: at each end one sample is there or not.
+            if (sampling == Sampling::Independent)
+                EXPECT_WITHIN(mean, share, 4 * std::sqrt(ends * .25 / 256) / 64 + 1e-6);
         }
 }
 

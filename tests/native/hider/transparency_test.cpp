@@ -265,8 +265,8 @@ TEST_P(Transparency, MixedGridsAreClassifiedByMicropolygon) {
     for (int x = 8; x < 12; ++x) {
         double column = 0;
         for (int y = 0; y < 16; ++y) column += p.alpha(x, y) / 16;
-        // Linear from 1 at x = 8 to 0 at x = 12; the sampling error of x within the pixel.
-        EXPECT_WITHIN(column, 1 - (x + .5 - 8) / 4, 4 * .25 / std::sqrt(12 * 16 * 64));
+        // Linear from 1 at x = 8 to 0 at x = 12; of x each 64th of a pixel has one sample.
+        EXPECT_WITHIN(column, 1 - (x + .5 - 8) / 4, 4 * .25 / 64 / std::sqrt(12 * 16 * 64));
     }
     EXPECT_LT(shot.statistics.get(Counter::FragmentsStored), 4u * 17 * 64 * 4);
 }
