@@ -2,7 +2,7 @@
 """Keeps what each test measured against which limit, for the tables of docs (case_table.py).
 
 Every `assert error <= limit` of two numbers becomes a property "held" of its test in `--junitxml` reports.
-Takes a share of the cases of each test (`--cases K/N`).
+Takes a share of the cases of each test (`--cases K/N`), but all of those marked as a sample.
 """
 
 import ast
@@ -69,6 +69,7 @@ def pytest_collection_modifyitems(config, items):
         test = item.parent.nodeid, item.originalname
         # By names, not by places: cases are often products of parameters, whose every fourth would have one of them alike.
         is_kept = test not in seen or zlib.crc32(item.name.encode()) % parts == rest
+        is_kept |= item.get_closest_marker("sample") is not None
         (kept if is_kept else left_out).append(item)
         seen.add(test)
     config.hook.pytest_deselected(items=left_out)

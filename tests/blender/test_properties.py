@@ -55,6 +55,7 @@ def samples(session):
     return found
 
 
+@pytest.mark.sample
 @pytest.mark.parametrize("probe", PROBES, ids=lambda probe: probe.name)
 def test_flips_change_both_pictures_alike_or_are_told(scene, session, samples, probe):
     table = exceptions.entries(exceptions.read_parts())
