@@ -4,7 +4,7 @@
     PYTHONPATH=<folder of granita_core> python3 bench/executors.py [--machine NAME] [--scenes spheres ...]
 
 Wall clock of whole frames, medians of three taken in turns (fewer of what takes seconds); error is the RMSE beside 1,024
-samples of the CPU's executor with another seed.  Passes are the chapter's sampling: a turned lattice for the whole
+samples of the CPU's executor with another seed.  Passes are the chapter's sampling: a rotated lattice for the whole
 picture, at times and lens points that all pixels share.  "GPU" is what OpenGL offers, which the results name.  Writes
 bench/results/executors_NAME.json.
 """

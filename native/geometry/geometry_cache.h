@@ -10,7 +10,7 @@
 
 #include "base/once.h"
 #include "base/report.h"
-#include "geometry/kept_geometry.h"
+#include "geometry/persistent_geometry.h"
 #include "math/bounds.h"
 #include "scene/scene.h"
 
@@ -19,7 +19,8 @@ namespace granita {
 /// Thread-safe; one a frame, over a store that may outlive it.
 class GeometryCache {
   public:
-    explicit GeometryCache(std::shared_ptr<KeptGeometry> kept = std::make_shared<KeptGeometry>())
+    explicit GeometryCache(
+        std::shared_ptr<PersistentGeometry> kept = std::make_shared<PersistentGeometry>())
         : m_kept(std::move(kept)) {}
 
     /// As of GeometryParts.  What there was to say of a geometry is said once a frame.
@@ -43,7 +44,7 @@ class GeometryCache {
     };
     Entry& entry(const Scene& scene, std::size_t geometry);
 
-    std::shared_ptr<KeptGeometry> m_kept;
+    std::shared_ptr<PersistentGeometry> m_kept;
     std::mutex m_mutex;
     std::map<std::size_t, Entry> m_entries;
 };

@@ -18,10 +18,10 @@ float pixel_spread(const Projection& projection) {
 }
 
 void add(BackgroundRays& rays, const Projection& p, const Vec3f& direction, Vec2d raster,
-         const Look& look) {
+         const CameraSample& sample) {
     rays.directions.push_back(direction);
     // They start on the lens.
-    if (!p.perspective) rays.rasters.emplace_back(raster + look.lens * p.lens_radius * p.scale);
+    if (!p.perspective) rays.rasters.emplace_back(raster + sample.lens * p.lens_radius * p.scale);
 }
 
 /// Colours at the corners of a tile's pixels, [17][17].
@@ -99,8 +99,8 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
     wanted.directions.reserve(uncovered.size());
     for (const std::size_t i : uncovered) {
         const Vec2d raster = tile.raster(i);
-        const Look look = tile.look(i);
-        add(wanted, camera.projection, tile.direction(raster, look), raster, look);
+        const CameraSample sample = tile.sample(i);
+        add(wanted, camera.projection, tile.direction(raster, sample), raster, sample);
     }
     shading.background(wanted, found);
     for (std::size_t k = 0; k < uncovered.size(); ++k) colors[uncovered[k]] = found[k];
@@ -109,14 +109,14 @@ std::vector<Vec3f> tile_background(const Camera& camera, const SampleTable& tabl
 
 std::vector<Vec3f> corner_background(const Camera& camera, const ShadingSystem& shading,
                                      const Rect& pixels, const RasterPass& pass) {
-    const Look look{pass.t, {pass.u, pass.v}, pass.inverse_focus};
+    const CameraSample sample{pass.t, {pass.u, pass.v}, pass.inverse_focus};
     const Projection& p = camera.projection;
-    const Mat4d world_from_camera = CameraPath(camera).world_from_camera(look.t);
+    const Mat4d world_from_camera = CameraPath(camera).world_from_camera(sample.t);
     BackgroundRays rays{.spread = pixel_spread(p)};
     std::vector<Vec3f> colors;
     for (int y = pixels.y0; y <= pixels.y1; ++y)
         for (int x = pixels.x0; x <= pixels.x1; ++x)
-            add(rays, p, world_direction(p, world_from_camera, {x, y}, look), {x, y}, look);
+            add(rays, p, world_direction(p, world_from_camera, {x, y}, sample), {x, y}, sample);
     shading.background(rays, colors);
     return colors;
 }

@@ -10,26 +10,27 @@
 namespace granita {
 
 /// When and from which point of the unit lens a sample looks.
-struct Look {
+struct CameraSample {
     double t = 0.0;
     Vec2d lens{0.0};
     double inverse_focus = 0.0;
 };
 
 /// Of one of a tile's.
-Look look_of(const TileSamples& samples, std::size_t i, const Projection& projection);
+CameraSample camera_sample_of(const TileSamples& samples, std::size_t i,
+                              const Projection& projection);
 
 /// What a sample sees, in camera space: where depth is 0, and the way of a metre of depth.
 struct CameraLine {
     Vec3d start, way;
     Vec3d at(double depth) const { return start + way * depth; }
 };
-CameraLine camera_line(const Projection& projection, Vec2d raster, const Look& look);
+CameraLine camera_line(const Projection& projection, Vec2d raster, const CameraSample& sample);
 
 /// World direction through a raster position (pixels): a point at infinity obeys X = cx + sx (slope
 /// + lx / focus) (math/projection.h with z -> infinity).
 Vec3f world_direction(const Projection& projection, const Mat4d& world_from_camera, Vec2d raster,
-                      const Look& look);
+                      const CameraSample& sample);
 
 class CameraRays {
   public:
@@ -47,11 +48,13 @@ class CameraRays {
     Vec2d raster(double x, double y) const { return m_origin + Vec2d(x, y); }
     /// Of a sample.
     Vec2d raster(std::size_t i) const { return raster(m_samples.x[i], m_samples.y[i]); }
-    Look look(std::size_t i) const { return look_of(m_samples, i, m_projection); }
+    CameraSample sample(std::size_t i) const {
+        return camera_sample_of(m_samples, i, m_projection);
+    }
 
     /// In the world.
-    Vec3f direction(Vec2d raster, const Look& look) const {
-        return world_direction(m_projection, m_path.world_from_camera(look.t), raster, look);
+    Vec3f direction(Vec2d raster, const CameraSample& sample) const {
+        return world_direction(m_projection, m_path.world_from_camera(sample.t), raster, sample);
     }
 
     struct Seen {

@@ -108,7 +108,7 @@ struct FacesOfSamples::Mesh {
 };
 
 FacesOfSamples::FacesOfSamples(const View& view, std::shared_ptr<const SampleLevels> levels,
-                               const ShadingSystem& shading, std::shared_ptr<KeptRays> rays,
+                               const ShadingSystem& shading, std::shared_ptr<PersistentRays> rays,
                                const Progress& progress)
     : m_view(view),
       m_levels(std::move(levels)),
@@ -219,7 +219,7 @@ void FacesOfSamples::look(const Mesh& mesh, const SampleTable& table, Vec2i tile
             const auto pixel = static_cast<std::size_t>((y - tile.y * kTileSize) * kTileSize + x -
                                                         tile.x * kTileSize);
             for (std::size_t i = pixel * count; i < (pixel + 1) * count; ++i) {
-                const Look at = look_of(samples, i, projection);
+                const CameraSample at = camera_sample_of(samples, i, projection);
                 const CameraLine line =
                     camera_line(projection, corner + Vec2d(samples.x[i], samples.y[i]), at);
                 Into into = mesh.still;

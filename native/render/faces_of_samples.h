@@ -19,7 +19,7 @@ class FacesOfSamples final : public SampledFaces {
     /// `view`, whose own this may be, `shading` and `progress` must live while instances are
     /// opened; `rays`: where meshes that rays meet are looked for and left.
     FacesOfSamples(const View& view, std::shared_ptr<const SampleLevels> levels,
-                   const ShadingSystem& shading, std::shared_ptr<KeptRays> rays,
+                   const ShadingSystem& shading, std::shared_ptr<PersistentRays> rays,
                    const Progress& progress);
 
     std::optional<std::vector<std::uint32_t>> of(

@@ -84,13 +84,13 @@ BucketLayout make_layout(const Options& options, const Film& film, const SampleL
         size, 0, around);
 }
 
-std::optional<SceneChanges> changes_since(const KeptVisibility* before, const Scene& scene) {
+std::optional<SceneChanges> changes_since(const PersistentVisibility* before, const Scene& scene) {
     if (!before) return std::nullopt;
     return SceneChanges(before->scene(), scene);
 }
 
-KeptShading shading_after(KeptShading shading, const KeptVisibility* before,
-                          const std::optional<SceneChanges>& changes, const Scene& scene) {
+PersistentShading shading_after(PersistentShading shading, const PersistentVisibility* before,
+                                const std::optional<SceneChanges>& changes, const Scene& scene) {
     if (!before) return shading;
     shading.grids = before->shaded_grids(*changes);
     if (before->displaces_alike(scene, *changes)) shading.offsets = before->offsets();
@@ -102,9 +102,9 @@ PixelFilter filter_of(const Scene& scene) {
 }
 
 /// What is kept of the frame.  Not what takes its samples by noise, nor what lies in a device.
-std::unique_ptr<KeptVisibility> make_visibility(Frame& frame,
-                                                const std::shared_ptr<const Scene>& scene,
-                                                const std::shared_ptr<Statistics>& statistics) {
+std::unique_ptr<PersistentVisibility> make_visibility(
+    Frame& frame, const std::shared_ptr<const Scene>& scene,
+    const std::shared_ptr<Statistics>& statistics) {
     if (frame.choice.gl || frame.levels.count() > 1) return nullptr;
     if (frame.before) {
         if (frame.before->serves(*scene, *frame.changes, frame.shading,
@@ -116,16 +116,16 @@ std::unique_ptr<KeptVisibility> make_visibility(Frame& frame,
         }
         frame.before->forget_samples();
     }
-    return std::make_unique<KeptVisibility>(scene, frame.shared_view, statistics, frame.shading,
-                                            frame.film.sample_pixels(), frame.layout.count(),
-                                            frame.shared_levels);
+    return std::make_unique<PersistentVisibility>(scene, frame.shared_view, statistics,
+                                                  frame.shading, frame.film.sample_pixels(),
+                                                  frame.layout.count(), frame.shared_levels);
 }
 
 }  // namespace
 
 Frame::Frame(const std::shared_ptr<const Scene>& frame_scene,
              const std::shared_ptr<Statistics>& frame_statistics, Report& frame_report,
-             const Progress& frame_progress, ExecutorChoice frame_choice, KeptPicture kept)
+             const Progress& frame_progress, ExecutorChoice frame_choice, PersistentPicture kept)
     : scene(*frame_scene),
       statistics(*frame_statistics),
       report(frame_report),
@@ -159,7 +159,7 @@ Frame::Frame(const std::shared_ptr<const Scene>& frame_scene,
             view, shared_levels, shading, std::move(kept.shading.rays), progress);
 }
 
-std::unique_ptr<KeptVisibility> Frame::take_visibility() {
+std::unique_ptr<PersistentVisibility> Frame::take_visibility() {
     if (!visibility) return nullptr;
     visibility->end_picture();
     // It is to be said again.

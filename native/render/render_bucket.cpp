@@ -105,7 +105,7 @@ std::vector<ResolvedTile> look(Frame& frame, int bucket, int level, const Rect& 
 
 /// As an earlier picture has seen it.
 std::vector<ResolvedTile> look_again(Frame& frame, int bucket) {
-    const KeptVisibility::Bucket& kept = *frame.visibility->bucket(bucket);
+    const PersistentVisibility::Bucket& kept = *frame.visibility->bucket(bucket);
     frame.statistics.add(Counter::BucketsSeenBefore);
     shade_grids(frame, bucket, kept.grids, kept.seen, kept.around);
     kept.hider->make_samples();

@@ -142,7 +142,7 @@ struct RenderJob::Impl {
         if (lost) throw *lost;
     }
 
-    KeptPicture kept() {
+    PersistentPicture kept() {
         if (!session) return {};
         return {session->shading(), session->take_visibility(*scene), true};
     }

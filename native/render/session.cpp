@@ -25,26 +25,26 @@ void Session::adopt(Scene& scene) {
     m_shading.rays->keep_only(m_before);
 }
 
-std::unique_ptr<KeptVisibility> Session::take_visibility(const Scene& scene) {
+std::unique_ptr<PersistentVisibility> Session::take_visibility(const Scene& scene) {
     const std::lock_guard lock(m_mutex);
     for (auto& kept : m_visibility)
         if (kept->is_of_size(scene)) {
-            std::unique_ptr<KeptVisibility> found = std::move(kept);
+            std::unique_ptr<PersistentVisibility> found = std::move(kept);
             std::erase(m_visibility, nullptr);
             return found;
         }
     return nullptr;
 }
 
-void Session::keep(std::unique_ptr<KeptVisibility> visibility) {
+void Session::keep(std::unique_ptr<PersistentVisibility> visibility) {
     if (!visibility) return;
-    std::vector<std::unique_ptr<KeptVisibility>> dropped;  // freed outside the lock
+    std::vector<std::unique_ptr<PersistentVisibility>> dropped;  // freed outside the lock
     const std::lock_guard lock(m_mutex);
     std::uint64_t bytes = visibility->bytes();
-    std::vector<std::unique_ptr<KeptVisibility>> kept;
+    std::vector<std::unique_ptr<PersistentVisibility>> kept;
     kept.push_back(std::move(visibility));
     for (auto& other : m_visibility) {
-        const bool fits = bytes + other->bytes() <= KeptVisibility::kMostBytes;
+        const bool fits = bytes + other->bytes() <= PersistentVisibility::kMostBytes;
         const bool is_other_size = !other->is_of_size(kept.front()->scene());
         bytes += fits && is_other_size ? other->bytes() : 0;
         (fits && is_other_size ? kept : dropped).push_back(std::move(other));

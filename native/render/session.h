@@ -9,8 +9,8 @@
 //   view, transforms, its displacement; what is displaced     kept                made again
 //   lens, lights, colours, samples, film                      kept                kept
 //
-// What samples have seen and how grids were shaded is kept by picture (kept_visibility.h); which
-// edit each of them reads stands in scene/scene_changes.h.
+// What samples have seen and how grids were shaded is kept by picture (persistent_visibility.h);
+// which edit each of them reads stands in scene/scene_changes.h.
 //
 // A final frame is a session that lives for one picture.
 #pragma once
@@ -21,9 +21,9 @@
 #include <mutex>
 #include <vector>
 
-#include "render/kept_visibility.h"
+#include "render/persistent_visibility.h"
 #include "scene/scene.h"
-#include "shade/kept_shading.h"
+#include "shade/persistent_shading.h"
 
 namespace granita {
 
@@ -35,13 +35,13 @@ class Session {
     /// before become that one; what is made of others is forgotten.
     void adopt(Scene& scene);
 
-    const KeptShading& shading() const { return m_shading; }
+    const PersistentShading& shading() const { return m_shading; }
 
     /// What a picture of the scene's size has left, or nullptr.  Who takes it has it alone.
-    std::unique_ptr<KeptVisibility> take_visibility(const Scene& scene);
+    std::unique_ptr<PersistentVisibility> take_visibility(const Scene& scene);
     /// Of the pictures that came last, one of each size, as many as fit in
-    /// KeptVisibility::kMostBytes.
-    void keep(std::unique_ptr<KeptVisibility> visibility);
+    /// PersistentVisibility::kMostBytes.
+    void keep(std::unique_ptr<PersistentVisibility> visibility);
 
     /// Since the session began.
     std::uint64_t geometries_adopted() const { return m_adopted; }
@@ -50,9 +50,9 @@ class Session {
 
   private:
     std::mutex m_mutex;
-    KeptShading m_shading;
+    PersistentShading m_shading;
     GeometryList m_before;
-    std::vector<std::unique_ptr<KeptVisibility>> m_visibility;  ///< latest first
+    std::vector<std::unique_ptr<PersistentVisibility>> m_visibility;  ///< latest first
     std::atomic<std::uint64_t> m_adopted{0};
 };
 

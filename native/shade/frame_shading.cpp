@@ -16,7 +16,7 @@
 namespace granita {
 
 FrameShading::FrameShading(const Scene& s, Statistics& stats, Report& warnings, const Progress& p,
-                           bool refines_samples, const KeptShading& kept)
+                           bool refines_samples, const PersistentShading& kept)
     : scene(s),
       statistics(stats),
       report(warnings),

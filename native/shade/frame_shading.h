@@ -15,12 +15,12 @@
 #include "scene/shutter_warp.h"
 #include "shade/bounces/bounced_light.h"
 #include "shade/bounces/hit_shader.h"
-#include "shade/kept_shading.h"
 #include "shade/lights/direct_light.h"
 #include "shade/material_displacement.h"
 #include "shade/moving_eye.h"
 #include "shade/nodes/material_emission.h"
 #include "shade/nodes/node_compiler.h"
+#include "shade/persistent_shading.h"
 #include "shade/programs/shading_camera.h"
 #include "shade/seen_volumes.h"
 #include "shade/shadow_catchers.h"
@@ -62,7 +62,7 @@ struct FrameShading {
 
     /// Of ShadingSystem's.
     FrameShading(const Scene& s, Statistics& stats, Report& warnings, const Progress& p,
-                 bool refines_samples, const KeptShading& kept);
+                 bool refines_samples, const PersistentShading& kept);
 
     const CompiledSurface& material(int index) const {
         return index < 0 ? materials.back() : materials[index];

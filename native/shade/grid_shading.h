@@ -53,7 +53,7 @@ struct GridShading {
     bool turns = false;  ///< what is seen of it to its other side
     /// Of a point's light samples what blur leaves, and with what narrow and dense ones leave.
     float sharpness = 1.0f, fewer = 1.0f;
-    float light_share = 0.0f;  ///< as Grid::light_share
+    float light_budget = 0.0f;  ///< as Grid::light_budget
 
     GridShading() = default;
     GridShading(const GridShading&) = delete;

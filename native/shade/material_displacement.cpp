@@ -45,12 +45,12 @@ struct MaterialDisplacement::Target {
 MaterialDisplacement::MaterialDisplacement(const Scene& scene,
                                            std::vector<std::optional<DisplacementProgram>> programs,
                                            std::shared_ptr<GeometryCache> geometries,
-                                           Report& report, std::shared_ptr<KeptOffsets> kept)
+                                           Report& report, std::shared_ptr<PersistentOffsets> kept)
     : m_scene(scene),
       m_programs(std::move(programs)),
       m_geometries(std::move(geometries)),
       m_report(report),
-      m_kept(kept ? std::move(kept) : std::make_shared<KeptOffsets>()),
+      m_kept(kept ? std::move(kept) : std::make_shared<PersistentOffsets>()),
       m_targets(scene.instances.size()) {
     if (std::ranges::none_of(m_programs, [](const auto& p) { return p.has_value(); })) return;
     const Options& options = scene.options;

@@ -20,7 +20,7 @@
 namespace granita {
 
 /// Shared by pictures whose offsets are the same: their largest, by instance.
-struct KeptOffsets {
+struct PersistentOffsets {
     std::mutex mutex;
     std::map<std::size_t, float> bounds;
 };
@@ -32,14 +32,14 @@ class MaterialDisplacement final : public Displacement {
     MaterialDisplacement(const Scene& scene,
                          std::vector<std::optional<DisplacementProgram>> programs,
                          std::shared_ptr<GeometryCache> geometries, Report& report,
-                         std::shared_ptr<KeptOffsets> kept);
+                         std::shared_ptr<PersistentOffsets> kept);
     ~MaterialDisplacement() override;
 
     /// Whether any instance is displaced at all.
     bool any() const;
     /// Whether there was something to say of an offset.
     bool has_said() const { return m_has_said; }
-    const std::shared_ptr<KeptOffsets>& kept() const { return m_kept; }
+    const std::shared_ptr<PersistentOffsets>& kept() const { return m_kept; }
     std::shared_ptr<const void> identity() const override { return m_kept; }
     bool displaces(std::size_t instance) const override;
     float bound(std::size_t instance) const override;
@@ -65,7 +65,7 @@ class MaterialDisplacement final : public Displacement {
     std::vector<std::optional<DisplacementProgram>> m_programs;
     std::shared_ptr<GeometryCache> m_geometries;
     Report& m_report;
-    std::shared_ptr<KeptOffsets> m_kept;
+    std::shared_ptr<PersistentOffsets> m_kept;
     mutable std::atomic<bool> m_has_said{false};
     std::vector<std::unique_ptr<Target>> m_targets;  ///< [instances]; nullptr: not displaced
 };

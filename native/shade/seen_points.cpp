@@ -19,11 +19,11 @@ constexpr float kLeastSeen = 0.02f;
 /// At a point that something moving may hide for a part of the shutter.
 constexpr int kLooks = 8;
 
-class Looks {
+class EyeRays {
   public:
-    Looks(const ShadingPoints& points, const PointPaths& paths, const GridKey& key,
-          const RayScene& rays, const Scene& scene, const MovingEye& eye,
-          const ShutterWarp* shutter)
+    EyeRays(const ShadingPoints& points, const PointPaths& paths, const GridKey& key,
+            const RayScene& rays, const Scene& scene, const MovingEye& eye,
+            const ShutterWarp* shutter)
         : m_points(points),
           m_paths(paths),
           m_rays(rays),
@@ -41,12 +41,12 @@ class Looks {
           m_sequence(mix_bits(grid_seed(key, scene.options.seed))),
           m_lens(mix_bits(mix_bits(grid_seed(key, scene.options.seed)))) {}
 
-    struct Look {
+    struct EyeRay {
         Ray ray;
         bool is_behind;  ///< it sees the side that is turned away at the frame time
     };
     /// From the point to the eye, at one of kLooks times that are spread over its life.
-    Look from(std::size_t i, int look) {
+    EyeRay from(std::size_t i, int look) {
         const std::uint32_t place = place_in_sequence(m_points, i);
         const float frame_time = m_scene.options.frame_time;
         const float time = m_shutter ? this->time(m_sequence(place).x, look) : frame_time;
@@ -139,10 +139,11 @@ std::vector<std::uint8_t> off_edges(const std::vector<std::uint8_t>& marked, std
 }
 
 /// [looks] whether enough light comes through.
-std::vector<std::uint8_t> are_clear(const RayScene& rays, const std::vector<Looks::Look>& looks) {
+std::vector<std::uint8_t> are_clear(const RayScene& rays,
+                                    const std::vector<EyeRays::EyeRay>& looks) {
     std::vector<Ray> asked;
     asked.reserve(looks.size());
-    for (const Looks::Look& look : looks) asked.push_back(look.ray);
+    for (const EyeRays::EyeRay& look : looks) asked.push_back(look.ray);
     std::vector<Vec3f> left(asked.size());
     rays.transmittances(asked, left);
     std::vector<std::uint8_t> clear(asked.size());
@@ -153,11 +154,11 @@ std::vector<std::uint8_t> are_clear(const RayScene& rays, const std::vector<Look
 /// At points before which something moves: those that are seen for a part of the shutter are lit as
 /// they are then.  Light of the rest is that of places inside of things, which went into the mean.
 /// Returns the points whose other side is seen more often.
-std::vector<std::size_t> look_again(ShadingPoints& points, Looks& looks, const RayScene& rays,
-                                    const std::vector<Looks::Look>& first,
-                                    std::vector<std::uint8_t>& seen) {
+std::vector<std::size_t> trace_again(ShadingPoints& points, EyeRays& looks, const RayScene& rays,
+                                     const std::vector<EyeRays::EyeRay>& first,
+                                     std::vector<std::uint8_t>& seen) {
     std::vector<std::size_t> doubtful, turned;
-    std::vector<Looks::Look> asked;
+    std::vector<EyeRays::EyeRay> asked;
     for (std::size_t i = 0; i < points.count; ++i) {
         if (!looks.may_vary(i, first[i].ray)) continue;
         doubtful.push_back(i);
@@ -168,7 +169,7 @@ std::vector<std::size_t> look_again(ShadingPoints& points, Looks& looks, const R
         const std::size_t i = doubtful[k];
         std::vector<float> times;
         int behind = 0;
-        const auto see = [&](const Looks::Look& look) {
+        const auto see = [&](const EyeRays::EyeRay& look) {
             times.push_back(look.ray.time);
             behind += look.is_behind;
         };
@@ -178,8 +179,8 @@ std::vector<std::size_t> look_again(ShadingPoints& points, Looks& looks, const R
         seen[i] = !times.empty();
         if (2 * behind > static_cast<int>(times.size())) turned.push_back(i);
         if (times.empty() || times.size() == kLooks) continue;
-        points.seen_times.resize(points.count);
-        points.seen_times[i] = std::move(times);
+        points.visible_intervals.resize(points.count);
+        points.visible_intervals[i] = std::move(times);
     }
     return turned;
 }
@@ -189,13 +190,13 @@ std::vector<std::size_t> look_again(ShadingPoints& points, Looks& looks, const R
 std::vector<std::size_t> look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
                                  const RayScene& rays, const Scene& scene, const MovingEye& eye,
                                  const ShutterWarp* shutter, float edge) {
-    Looks looks(points, paths, key, rays, scene, eye, shutter);
-    std::vector<Looks::Look> asked;
+    EyeRays looks(points, paths, key, rays, scene, eye, shutter);
+    std::vector<EyeRays::EyeRay> asked;
     asked.reserve(points.count);
     for (std::size_t i = 0; i < points.count; ++i) asked.push_back(looks.from(i, 0));
     std::vector<std::uint8_t> seen = are_clear(rays, asked);
     std::vector<std::size_t> turned;
-    if (shutter) turned = look_again(points, looks, rays, asked, seen);
+    if (shutter) turned = trace_again(points, looks, rays, asked, seen);
     if (std::ranges::count(seen, 0) == 0) return turned;
     const std::vector<std::uint8_t> inside = off_edges(seen, points.columns);
     const auto all_seen = static_cast<float>(std::ranges::count(seen, 1));

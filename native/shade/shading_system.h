@@ -13,7 +13,7 @@
 #include "dice/view.h"
 #include "scene/scene.h"
 #include "shade/background_rays.h"
-#include "shade/kept_shading.h"
+#include "shade/persistent_shading.h"
 #include "shade/refined_points.h"
 #include "shade/seen_volumes.h"
 #include "shade/textures/texture.h"
@@ -32,7 +32,8 @@ class ShadingSystem {
     /// @param refines whether refine() will be called where grids ask for it (Grid::unsettled).
     /// @param kept of an earlier frame; what this one makes is left there too.
     ShadingSystem(const Scene& scene, Statistics& statistics, Report& report,
-                  const Progress& progress, bool refines = true, const KeptShading& kept = {});
+                  const Progress& progress, bool refines = true,
+                  const PersistentShading& kept = {});
     ~ShadingSystem();
 
     /// For View: [materials + 1], the last for "no material".
@@ -65,7 +66,7 @@ class ShadingSystem {
     void shade_radiance(Grid& grid) const;
     /// Its first half: what the grid's points find by themselves, among it what they tell grids
     /// around (Grid::told).  nullptr: there is no other half, or an equal grid of an earlier
-    /// picture has told it, and has been shaded where Grid::light_share says so.
+    /// picture has told it, and has been shaded where Grid::light_budget says so.
     /// @param anew whatever earlier pictures have.
     std::shared_ptr<GridShading> begin_radiance(Grid& grid, bool anew = false) const;
     /// `around`: what grids near this one tell it, in the order of their keys.

@@ -34,7 +34,7 @@ def test_still_edge():
     assert not alpha[:, 9:].any()
 
 
-def turned_lattice(side):
+def rotated_lattice(side):
     """A lattice turned by atan(1 / side), for an even side: side x + y and side y - x are whole and a half."""
     u, v = np.meshgrid(np.arange(2 * side) + 0.5, np.arange(-side, side) + 0.5)
     x, y = (side * u - v) / (side**2 + 1), (u + side * v) / (side**2 + 1)
@@ -65,7 +65,7 @@ def test_moving_disc_time_fraction():
     s.mesh(snapshot, points, faces, s.emission(snapshot), transforms=move)
     x, y = np.meshgrid(np.arange(80) - 20.5, np.arange(32) - 16.5)
     expected = np.zeros_like(x)
-    for px, py in turned_lattice(4):  # at its own places: only time is sampled
+    for px, py in rotated_lattice(4):  # at its own places: only time is sampled
         h = np.sqrt(np.maximum(radius**2 - (y + py) ** 2, 0))
         lo, hi = np.clip(x + px - h, 0, length), np.clip(x + px + h, 0, length)
         expected += (hi - lo) / length / 17

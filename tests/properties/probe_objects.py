@@ -155,9 +155,7 @@ PROBES = [
     Probe("moving object", _moving_object, ("object",), {}, _OBJECTS),
     Probe("material", _material, ("material",)),
     Probe("material without nodes", _plain_material, ("material",)),
-    Probe(
-        "collection instance", _collection_instance, ("object", "part", "inside"), {}, _OBJECTS
-    ),
+    Probe("collection instance", _collection_instance, ("object", "part", "inside"), {}, _OBJECTS),
     Probe(
         "instances on vertices",
         _instancer("VERTS"),

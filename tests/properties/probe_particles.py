@@ -6,6 +6,7 @@ import stage
 import unwalked
 from probe import Probe
 
+
 def _emitter(scene, kind):
     stage.set_world(scene, (0.1, 0.1, 0.1))
     stage.camera(scene)
@@ -71,9 +72,7 @@ _WALKED = ("settings", "system")
 PROBES = [
     Probe("hair", _hair(False), _WALKED, {}, _BOTH),
     Probe("hair with children", _hair(True), ("settings",), {}, _PARTICLES),
-    Probe(
-        "particles as objects", _objects("OBJECT"), _WALKED, {}, _BOTH
-    ),
+    Probe("particles as objects", _objects("OBJECT"), _WALKED, {}, _BOTH),
     Probe("particles as collections", _objects("COLLECTION"), ("settings",), {}, _PARTICLES),
     Probe("particles as halos", _objects("HALO"), (), {}),
 ]

@@ -32,7 +32,7 @@ bool GridColors::color(const GridPool& pool, std::span<const SurfaceId> ids, Sam
     for (std::size_t s = 0; s < ids.size(); ++s) {
         if (ids[s] == kNoSurface) continue;
         // Also where it is not known, which is then done again: no branch that is hard to foretell.
-        const Look& look = m_lookups[pool.slot(ids[s])];
+        const Lookup& look = m_lookups[pool.slot(ids[s])];
         colors.red[s] = look.color.x;
         colors.green[s] = look.color.y;
         colors.blue[s] = look.color.z;

@@ -24,12 +24,12 @@ class GridColors {
                std::span<std::uint8_t> done) const;
 
   private:
-    struct Look {
+    struct Lookup {
         Vec3f color{0.0f};
         std::uint32_t known = 0;
     };
     bool m_any = false;
-    std::vector<Look> m_lookups;  ///< by the grid's slot in the pool
+    std::vector<Lookup> m_lookups;  ///< by the grid's slot in the pool
 };
 
 }  // namespace granita

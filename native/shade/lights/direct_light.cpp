@@ -47,7 +47,7 @@ Vec3d camera_origin(const Scene& scene) {
 struct DirectLight::Impl {
     Impl(const Scene& scene, WorldEvaluator world_evaluator, Statistics& frame_statistics,
          Report& report, const Progress& progress, RayMaterials materials,
-         std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays,
+         std::shared_ptr<GeometryCache> cache, std::shared_ptr<PersistentRays> persistent_rays,
          const Displacement* displacement, const LightPatterns& patterns, bool nodes_ask_rays);
 
     LitGrid lit_grid(const ShadingPoints& points, const SurfaceClosure& closure, const GridKey& key,
@@ -76,7 +76,8 @@ struct DirectLight::Impl {
 DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator,
                         Statistics& frame_statistics, Report& report,
                         const Progress& frame_progress, RayMaterials materials,
-                        std::shared_ptr<GeometryCache> cache, std::shared_ptr<KeptRays> kept_rays,
+                        std::shared_ptr<GeometryCache> cache,
+                        std::shared_ptr<PersistentRays> persistent_rays,
                         const Displacement* displacement, const LightPatterns& patterns,
                         bool nodes_ask_rays)
     : scene(frame_scene),
@@ -103,7 +104,7 @@ DirectLight::Impl::Impl(const Scene& frame_scene, WorldEvaluator world_evaluator
     if (asks_rays) {
         StageTimer timer(statistics, Stage::RayBuild);
         auto rays = std::make_unique<RayScene>(scene, origin, materials, progress, geometries,
-                                               &report, std::move(kept_rays), displacement);
+                                               &report, std::move(persistent_rays), displacement);
         statistics.peak_ray_bytes(rays->bytes());
         shining = LampFaces(scene, *rays, materials, patterns, report, progress);
         std::ranges::move(shining.take_lamps(), std::back_inserter(lamps));
@@ -305,9 +306,9 @@ void DirectLight::Impl::count(const LitGrid& grid) const {
 
 DirectLight::DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics,
                          Report& report, const Progress& progress, RayMaterials materials,
-                         std::shared_ptr<GeometryCache> geometries, std::shared_ptr<KeptRays> rays,
-                         const Displacement* displacement, const LightPatterns& patterns,
-                         bool nodes_ask_rays)
+                         std::shared_ptr<GeometryCache> geometries,
+                         std::shared_ptr<PersistentRays> rays, const Displacement* displacement,
+                         const LightPatterns& patterns, bool nodes_ask_rays)
     : m_impl(std::make_unique<Impl>(scene, std::move(world), statistics, report, progress,
                                     std::move(materials), std::move(geometries), std::move(rays),
                                     displacement, patterns, nodes_ask_rays)) {}

@@ -36,7 +36,7 @@
 #include "shade/lights/light_pattern.h"
 #include "shade/lights/lobe_ray.h"
 #include "shade/lights/part_rays.h"
-#include "shade/rays/kept_rays.h"
+#include "shade/rays/persistent_rays.h"
 #include "shade/rays/ray_materials.h"
 #include "shade/rays/ray_scene.h"
 
@@ -53,7 +53,7 @@ class DirectLight {
     DirectLight(const Scene& scene, WorldEvaluator world, Statistics& statistics, Report& report,
                 const Progress& progress, RayMaterials materials = {},
                 std::shared_ptr<GeometryCache> geometries = nullptr,
-                std::shared_ptr<KeptRays> rays = nullptr,
+                std::shared_ptr<PersistentRays> rays = nullptr,
                 const Displacement* displacement = nullptr, const LightPatterns& patterns = {},
                 bool nodes_ask_rays = false);
     ~DirectLight();

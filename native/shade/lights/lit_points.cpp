@@ -60,7 +60,8 @@ LitSets lit_points(const LampSet& set, LitGrid& grid, const ShadingPoints& point
                        count,
                        place,
                        exposed,
-                       points.seen_times.empty() ? std::span<const float>() : points.seen_times[i],
+                       points.visible_intervals.empty() ? std::span<const float>()
+                                                        : points.visible_intervals[i],
                        points.rise.empty() ? nullptr : &points.rise[i],
                        points.terminator_offset,
                        width_of(points, i),

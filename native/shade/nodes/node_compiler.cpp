@@ -274,7 +274,7 @@ SurfaceSources build_graph(ProgramBuilder& builder, const NodeGraph& graph) {
 Program opacity_program(const ProgramBuilder& builder, const VectorSource& transparency) {
     std::vector<int> roots;
     push_root(roots, transparency.slot);
-    return Program(builder.loads, builder.steps, builder.floats_a_point, roots);
+    return Program(builder.loads, builder.steps, builder.widths, roots);
 }
 
 OpacityProgram passing_program(const ProgramBuilder& builder, const VectorSource& transparency) {
@@ -324,7 +324,7 @@ DisplacementProgram compile_displacement(const NodeGraph& graph, const Scene& sc
     compiled.longest_in_world = is_in_world(graph);
     std::vector<int> roots;
     push_root(roots, compiled.offset.slot);
-    compiled.program = Program(builder.loads, builder.steps, builder.floats_a_point, roots);
+    compiled.program = Program(builder.loads, builder.steps, builder.widths, roots);
     compiled.requests = used_requests(builder.requests, {&compiled.program});
     return compiled;
 }
@@ -352,7 +352,7 @@ VolumeProgram compile_volume(const NodeGraph& graph, const Scene& scene, Texture
         push_root(roots, phase.first.slot);
         push_root(roots, phase.second.slot);
     }
-    compiled.program = Program(builder.loads, builder.steps, builder.floats_a_point, roots);
+    compiled.program = Program(builder.loads, builder.steps, builder.widths, roots);
     compiled.requests = used_requests(builder.requests, {&compiled.program});
     return compiled;
 }
@@ -395,8 +395,7 @@ CompiledSurface compile_surface(const NodeGraph& graph, const Scene& scene, Text
     compiled.radiance.is_patterned = builder.is_patterned && !asks_rays(graph);
     std::vector<int> roots = roots_of(compiled.radiance.sources, compiled.radiance.passes);
     if (builder.is_bumped) push_root(roots, builder.bumped.slot);
-    compiled.radiance.program =
-        Program(builder.loads, builder.steps, builder.floats_a_point, roots);
+    compiled.radiance.program = Program(builder.loads, builder.steps, builder.widths, roots);
     compiled.transparency = compiled.radiance.sources.transparency;
     compiled.opacity_program = opacity_program(builder, compiled.transparency);
     compiled.passing = passing_program(builder, compiled.transparency);

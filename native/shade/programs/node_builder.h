@@ -44,7 +44,7 @@ struct ProgramBuilder {
     std::vector<Load> loads{};
     std::vector<Step> steps{};
     std::vector<AttributeRequest> requests{};
-    int floats_a_point = 0;
+    std::vector<int> widths{};  ///< [slots] floats
     VectorSource
         bumped{};  ///< the shading normal, where `is_bumped`: what displacement makes of it
     bool is_bumped = false;
@@ -54,9 +54,8 @@ struct ProgramBuilder {
     std::vector<std::array<NodeOutputs, 3>> outputs{};
 
     int new_slot(int floats) {
-        const int slot = floats_a_point;
-        floats_a_point += floats;
-        return slot;
+        widths.push_back(floats);
+        return static_cast<int>(widths.size()) - 1;
     }
 };
 

@@ -53,9 +53,9 @@ float Run::scale_of(float width, Shift shift, std::size_t point) const {
     return length > 0.0f ? width * pixel / length : width;
 }
 
-Program::Program(const std::vector<Load>& loads, const std::vector<Step>& steps, int floats_a_point,
-                 const std::vector<int>& roots)
-    : m_floats_a_point(floats_a_point) {
+Program::Program(const std::vector<Load>& loads, const std::vector<Step>& steps,
+                 const std::vector<int>& widths, const std::vector<int>& roots)
+    : m_widths(widths) {
     std::unordered_set<int> live(roots.begin(), roots.end());
     std::vector<bool> kept(steps.size());
     for (std::size_t i = steps.size(); i-- > 0;) {
@@ -68,6 +68,11 @@ Program::Program(const std::vector<Load>& loads, const std::vector<Step>& steps,
     for (const Load& load : loads) {
         if (live.count(load.slot)) m_loads.push_back(load);
     }
+    std::vector<int> loaded;
+    for (const Load& load : m_loads) loaded.push_back(load.slot);
+    std::vector<SlotUse> uses;
+    for (const Step& step : m_steps) uses.push_back({step.reads, step.writes});
+    m_places = place_slots(m_widths, loaded, uses, roots);
 }
 
 void Program::execute(Run& run) const {

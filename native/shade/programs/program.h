@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/check.h"
 #include "base/progress.h"
 #include "dice/grid.h"
 #include "geometry/attribute_request.h"
@@ -23,6 +24,7 @@
 #include "scene/scene.h"
 #include "shade/bsdf/lobe.h"
 #include "shade/lights/light_pattern.h"
+#include "shade/programs/slot_places.h"
 
 namespace granita {
 
@@ -89,10 +91,11 @@ struct Column {
 /// One execution: memory for the slots.
 class Run {
   public:
-    /// `memory`: of an earlier run, to be used again.
-    Run(const ShadingInput& input, std::size_t count, int floats_a_point, std::vector<float> memory)
-        : m_input(input), m_count(count), m_memory(std::move(memory)) {
-        m_memory.assign(count * static_cast<std::size_t>(floats_a_point), 0.0f);
+    /// `places`: of the program's slots, kept by it; `memory`: of an earlier run, to be used again.
+    Run(const ShadingInput& input, std::size_t count, const SlotPlaces& places,
+        std::vector<float> memory)
+        : m_input(input), m_count(count), m_places(places), m_memory(std::move(memory)) {
+        m_memory.resize(count * static_cast<std::size_t>(places.floats_a_point));
     }
 
     std::size_t count() const { return m_count; }
@@ -104,11 +107,11 @@ class Run {
     template <class T>
     Column<T> read(const Source<T>& source) const {
         if (source.is_constant()) return {&source.constant, 0};
-        return {reinterpret_cast<const T*>(m_memory.data() + m_count * source.slot), 1};
+        return {reinterpret_cast<const T*>(m_memory.data() + first(source.slot)), 1};
     }
     template <class T>
     T* write(const Source<T>& source) {
-        return reinterpret_cast<T*>(m_memory.data() + m_count * source.slot);
+        return reinterpret_cast<T*>(m_memory.data() + first(source.slot));
     }
 
     /// Once results have been read.
@@ -116,9 +119,15 @@ class Run {
 
   private:
     float scale_of(float width, Shift shift, std::size_t point) const;
+    std::size_t first(int slot) const {
+        const int place = m_places.first[static_cast<std::size_t>(slot)];
+        GRANITA_CHECK(place >= 0);
+        return m_count * static_cast<std::size_t>(place);
+    }
 
     const ShadingInput& m_input;
     std::size_t m_count;
+    const SlotPlaces& m_places;
     std::vector<float> m_memory;
 };
 
@@ -143,19 +152,20 @@ struct Step {
 class Program {
   public:
     /// Keeps what the slots `roots` need of `steps` and `loads`, in their order.
-    Program(const std::vector<Load>& loads, const std::vector<Step>& steps, int floats_a_point,
-            const std::vector<int>& roots);
+    /// @param widths [slots] floats of each.
+    Program(const std::vector<Load>& loads, const std::vector<Step>& steps,
+            const std::vector<int>& widths, const std::vector<int>& roots);
     Program() = default;
 
     /// What the slots `roots` need of it.
     Program part(const std::vector<int>& roots) const {
-        return {m_loads, m_steps, m_floats_a_point, roots};
+        return {m_loads, m_steps, m_widths, roots};
     }
     /// Runs everything; results are read from the Run.  Throws Cancelled.
     void execute(Run& run) const;
     Run prepare(const ShadingInput& input, std::size_t count,
                 std::vector<float> memory = {}) const {
-        return Run(input, count, m_floats_a_point, std::move(memory));
+        return Run(input, count, m_places, std::move(memory));
     }
     const std::vector<Load>& loads() const { return m_loads; }
     /// request[old] -> new index, once the material's request list is final.
@@ -169,7 +179,8 @@ class Program {
   private:
     std::vector<Load> m_loads;
     std::vector<Step> m_steps;
-    int m_floats_a_point = 0;
+    std::vector<int> m_widths;
+    SlotPlaces m_places;
 };
 
 }  // namespace granita

@@ -20,7 +20,7 @@ bool embree_goes_on(void* progress, double) {
     return !static_cast<const Progress*>(progress)->cancelled();
 }
 
-void build_shape(KeptRayShape& made, RTCDevice device, const RayFilters& filters,
+void build_shape(PersistentRayShape& made, RTCDevice device, const RayFilters& filters,
                  const Progress& progress) {
     const std::string what = made.key.data->name + " of " + made.shape->size();
     made.built.reset(rtcNewScene(device));

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/progress.h"
-#include "shade/rays/kept_rays.h"
+#include "shade/rays/persistent_rays.h"
 
 namespace granita {
 
@@ -14,9 +14,9 @@ struct RayFilters {
     bool of_rays = false;  ///< rays may bring one of their own
 };
 
-/// Makes KeptRayShape::built and parts of its shape.
+/// Makes PersistentRayShape::built and parts of its shape.
 /// Throws Cancelled, std::bad_alloc, or SceneError naming the geometry that Embree could not take.
-void build_shape(KeptRayShape& made, RTCDevice device, const RayFilters& filters,
+void build_shape(PersistentRayShape& made, RTCDevice device, const RayFilters& filters,
                  const Progress& progress);
 
 /// Throws Cancelled, std::bad_alloc where the system gives no more, or SceneError naming `what`

@@ -182,16 +182,17 @@ RayKey MeshRayStore::key(std::size_t geometry, bool goes_on) const {
 }
 
 /// Embree asks to be told that rays bring filters.
-std::shared_ptr<const KeptRayShape> MeshRayStore::find(std::size_t geometry, bool goes_on) const {
+std::shared_ptr<const PersistentRayShape> MeshRayStore::find(std::size_t geometry,
+                                                             bool goes_on) const {
     const RayKey asked = key(geometry, goes_on);
     return goes_on ? m_kept->find(asked) : m_kept->find_mesh(asked.data.get(), asked.frame_time);
 }
 
-MeshRayStore::MeshRayStore(const Scene& scene, std::shared_ptr<KeptRays> kept,
+MeshRayStore::MeshRayStore(const Scene& scene, std::shared_ptr<PersistentRays> kept,
                            const Progress& progress)
     : m_scene(scene),
       m_progress(progress),
-      m_kept(kept ? std::move(kept) : std::make_shared<KeptRays>()) {
+      m_kept(kept ? std::move(kept) : std::make_shared<PersistentRays>()) {
     for (const bool goes_on : {false, true})
         for (std::size_t geometry = 0; geometry < scene.geometries.size(); ++geometry)
             m_was_there[goes_on].push_back(find(geometry, goes_on) != nullptr);
@@ -228,7 +229,7 @@ MeetableMesh MeshRayStore::mesh(std::size_t geometry,
         entry->mesh.coincident = std::make_shared<CoincidentPatches>(*shared);
         entry->mesh.shape = find(geometry, goes_on);
         if (entry->mesh.shape) return;
-        auto made = std::make_shared<KeptRayShape>();
+        auto made = std::make_shared<PersistentRayShape>();
         made->key = key(geometry, goes_on);
         made->shape = std::make_unique<RayMesh>(shared);
         build_shape(*made, m_kept->device(), {.of_rays = goes_on}, m_progress);

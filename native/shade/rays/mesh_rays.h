@@ -14,14 +14,14 @@
 #include "geometry/coincident_patches.h"
 #include "geometry/shared_geometry.h"
 #include "scene/scene.h"
-#include "shade/rays/kept_rays.h"
+#include "shade/rays/persistent_rays.h"
 #include "shade/rays/ray.h"
 
 namespace granita {
 
 /// A mesh as rays meet it.
 struct MeetableMesh {
-    std::shared_ptr<const KeptRayShape> shape;
+    std::shared_ptr<const PersistentRayShape> shape;
     std::shared_ptr<const CoincidentPatches> coincident;
 };
 
@@ -74,7 +74,8 @@ class MeshRays {
 class MeshRayStore {
   public:
     /// `scene` and `progress` must outlive this.
-    MeshRayStore(const Scene& scene, std::shared_ptr<KeptRays> kept, const Progress& progress);
+    MeshRayStore(const Scene& scene, std::shared_ptr<PersistentRays> kept,
+                 const Progress& progress);
     /// @param goes_on whether rays pass what they meet.
     MeetableMesh mesh(std::size_t geometry, const std::shared_ptr<const SharedGeometry>& shared,
                       bool goes_on);
@@ -87,11 +88,11 @@ class MeshRayStore {
 
   private:
     RayKey key(std::size_t geometry, bool goes_on) const;
-    std::shared_ptr<const KeptRayShape> find(std::size_t geometry, bool goes_on) const;
+    std::shared_ptr<const PersistentRayShape> find(std::size_t geometry, bool goes_on) const;
 
     const Scene& m_scene;
     const Progress& m_progress;
-    std::shared_ptr<KeptRays> m_kept;
+    std::shared_ptr<PersistentRays> m_kept;
     std::vector<bool> m_was_there[2];
     std::mutex m_mutex;
     struct Entry {

@@ -14,7 +14,7 @@
 #include "geometry/displacement.h"
 #include "geometry/geometry_cache.h"
 #include "scene/scene.h"
-#include "shade/rays/kept_rays.h"
+#include "shade/rays/persistent_rays.h"
 #include "shade/rays/ray.h"
 #include "shade/rays/ray_hit.h"
 #include "shade/rays/ray_materials.h"
@@ -34,7 +34,7 @@ class RayScene {
     /// Throws Cancelled, or SceneError naming the geometry that Embree could not take.
     RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materials,
              const Progress& progress, std::shared_ptr<GeometryCache> geometries = nullptr,
-             Report* report = nullptr, std::shared_ptr<KeptRays> kept = nullptr,
+             Report* report = nullptr, std::shared_ptr<PersistentRays> kept = nullptr,
              const Displacement* displacement = nullptr);
     ~RayScene();
 

@@ -43,7 +43,7 @@ bool RayScene::Impl::lets_light_through(const Instance& instance) const {
                        [&](std::int32_t material) { return materials.is_transparent(material); });
 }
 
-void RayScene::Impl::make_shape(KeptRayShape& made,
+void RayScene::Impl::make_shape(PersistentRayShape& made,
                                 const std::shared_ptr<const SharedGeometry>& shared,
                                 const RayDetail& detail, const Progress& progress) const {
     const RayKey& key = made.key;
@@ -85,10 +85,10 @@ void RayScene::Impl::build_geometry(int index, std::uint8_t use, Report& report,
         shared && shared->subdivision() ? detail_of(index, shared.get()) : RayDetail();
     const RayKey key{scene.geometries.share(geometry), scene.options.frame_time, use,
                      detail.eyes()};
-    std::shared_ptr<const KeptRayShape>& shape = shapes[geometry];
+    std::shared_ptr<const PersistentRayShape>& shape = shapes[geometry];
     shape = kept->find(key);
     if (!shape) {
-        auto made = std::make_shared<KeptRayShape>();
+        auto made = std::make_shared<PersistentRayShape>();
         made->key = key;
         make_shape(*made, shared, detail, progress);
         build(*made, progress);
@@ -112,10 +112,10 @@ void RayScene::Impl::build_displaced(std::size_t index, std::uint8_t use, Report
                      detail.eyes(),
                      displacement->identity(),
                      index};
-    std::shared_ptr<const KeptRayShape>& shape = displaced[index];
+    std::shared_ptr<const PersistentRayShape>& shape = displaced[index];
     shape = kept->find(key);
     if (!shape) {
-        auto made = std::make_shared<KeptRayShape>();
+        auto made = std::make_shared<PersistentRayShape>();
         made->key = key;
         auto triangles =
             std::make_unique<RayDisplaced>(shared, *displacement, index, detail, progress);
@@ -131,7 +131,7 @@ void RayScene::Impl::build_displaced(std::size_t index, std::uint8_t use, Report
             "is displaced so finely near the camera that its shadows are coarser than that");
 }
 
-void RayScene::Impl::build(KeptRayShape& made, const Progress& progress) const {
+void RayScene::Impl::build(PersistentRayShape& made, const Progress& progress) const {
     RayFilters filters;
     const bool of_points = made.key.data->kind == GeometryKind::Points;
     const bool looks_at_shadows = made.key.use & ~(kCasts | kIsShaded);
@@ -158,7 +158,7 @@ void RayScene::Impl::add_instance(std::uint32_t index, const Vec3d& origin) {
     const auto transforms = ray_transforms(instance.world_from_object, origin);
     if (!transforms) return;
     RTCGeometry node = instance_node(index, *transforms);
-    const KeptRayShape& kept_shape = shape_of(index);
+    const PersistentRayShape& kept_shape = shape_of(index);
     if (transforms->columns.size() > 1 || kept_shape.shape->knots() > 1 ||
         !instance.lifespan.is_whole())
         motion.add(box_of(kept_shape.built.get()), transforms->knots);
@@ -191,7 +191,7 @@ void RayScene::Impl::add_volumes() {
             volumes.reset(rtcNewScene(kept->device()));
             rtcSetSceneFlags(volumes.get(), RTC_SCENE_FLAG_ROBUST);
         }
-        const KeptRayShape& shape = shape_of(i);
+        const PersistentRayShape& shape = shape_of(i);
         if (transforms->columns.size() > 1 || shape.shape->knots() > 1 ||
             !scene.instances[i].lifespan.is_whole())
             motion.add(box_of(shape.built.get()), transforms->knots);
@@ -207,7 +207,8 @@ void RayScene::Impl::add_volumes() {
 
 RayScene::RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materials,
                    const Progress& progress, std::shared_ptr<GeometryCache> geometries,
-                   Report* report, std::shared_ptr<KeptRays> kept, const Displacement* displacement)
+                   Report* report, std::shared_ptr<PersistentRays> kept,
+                   const Displacement* displacement)
     : m_impl(std::make_unique<Impl>(scene, std::move(materials), std::move(geometries),
                                     std::move(kept), displacement, origin)) {
     Report unread;
@@ -232,7 +233,7 @@ RayScene::RayScene(const Scene& scene, const Vec3d& origin, RayMaterials materia
     if (displaced.empty() &&
         std::all_of(uses.begin(), uses.end(), [](std::uint8_t use) { return use == 0; }))
         return;
-    if (!impl.kept) impl.kept = std::make_shared<KeptRays>();
+    if (!impl.kept) impl.kept = std::make_shared<PersistentRays>();
     impl.shapes.resize(scene.geometries.size());
     for (std::size_t g = 0; g < uses.size(); ++g) {
         progress.check();

@@ -53,26 +53,26 @@ struct MetContext {
 
 struct RayScene::Impl {
     Impl(const Scene& frame_scene, RayMaterials ray_materials,
-         std::shared_ptr<GeometryCache> shared, std::shared_ptr<KeptRays> kept_rays,
+         std::shared_ptr<GeometryCache> shared, std::shared_ptr<PersistentRays> persistent_rays,
          const Displacement* moved, const Vec3d& camera)
         : scene(frame_scene),
           materials(std::move(ray_materials)),
           cache(shared ? std::move(shared) : std::make_shared<GeometryCache>()),
-          kept(std::move(kept_rays)),
+          kept(std::move(persistent_rays)),
           displacement(moved),
           origin(camera) {}
 
     RayDetail detail_of(int geometry, const SharedGeometry* shared) const;
-    void make_shape(KeptRayShape& made, const std::shared_ptr<const SharedGeometry>& shared,
+    void make_shape(PersistentRayShape& made, const std::shared_ptr<const SharedGeometry>& shared,
                     const RayDetail& detail, const Progress& progress) const;
-    void build(KeptRayShape& made, const Progress& progress) const;
+    void build(PersistentRayShape& made, const Progress& progress) const;
     void build_displaced(std::size_t instance, std::uint8_t use, Report& report,
                          const Progress& progress);
     bool is_displaced(std::size_t instance) const {
         return displacement && displacement->displaces(instance);
     }
     /// What stands for an instance.
-    const KeptRayShape& shape_of(std::size_t instance) const {
+    const PersistentRayShape& shape_of(std::size_t instance) const {
         if (is_displaced(instance)) return *displaced.at(displacement->same_as(instance));
         return *shapes[static_cast<std::size_t>(scene.instances[instance].geometry)];
     }
@@ -113,12 +113,12 @@ struct RayScene::Impl {
     const Scene& scene;
     RayMaterials materials;
     std::shared_ptr<GeometryCache> cache;
-    std::shared_ptr<KeptRays> kept;                           ///< nullptr = nothing casts a shadow
-    const Displacement* displacement;                         ///< nullptr: of none
-    Vec3d origin;                                             ///< of shading space
-    std::vector<std::shared_ptr<const KeptRayShape>> shapes;  ///< [geometries], as `kept`
+    std::shared_ptr<PersistentRays> kept;  ///< nullptr = nothing casts a shadow
+    const Displacement* displacement;      ///< nullptr: of none
+    Vec3d origin;                          ///< of shading space
+    std::vector<std::shared_ptr<const PersistentRayShape>> shapes;  ///< [geometries], as `kept`
     /// By the instance whose displacement it is.
-    std::unordered_map<std::size_t, std::shared_ptr<const KeptRayShape>> displaced;
+    std::unordered_map<std::size_t, std::shared_ptr<const PersistentRayShape>> displaced;
     RtcHandle<RTCScene> top;
     InstanceMotion motion;
     std::vector<RayInstance> instances;                       ///< by Embree's id in `top`

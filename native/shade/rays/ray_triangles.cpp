@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scene/knot_time.h"
-#include "shade/rays/kept_rays.h"
+#include "shade/rays/persistent_rays.h"
 
 namespace granita {
 namespace {
@@ -39,7 +39,7 @@ RayCorners corners_at(const RayPart& part, std::uint32_t primitive, float time) 
     return corners;
 }
 
-void for_each_triangle(const KeptRayShape& of, std::uint32_t instance,
+void for_each_triangle(const PersistentRayShape& of, std::uint32_t instance,
                        const std::function<void(const RayTriangle&)>& visit) {
     std::vector<std::array<Vec3f, 3>> corners;
     for (std::uint32_t g = 0; g < of.parts.size(); ++g) {

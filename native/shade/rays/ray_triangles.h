@@ -12,7 +12,7 @@
 
 namespace granita {
 
-struct KeptRayShape;
+struct PersistentRayShape;
 
 /// A triangle of a mesh, or half of a quad, as rays meet it.
 struct RayTriangle {
@@ -29,7 +29,7 @@ struct RayCorners {
 RayCorners corners_at(const RayPart& part, std::uint32_t primitive, float time);
 
 /// None of curves and points.  `instance`: Embree's number of it.
-void for_each_triangle(const KeptRayShape& of, std::uint32_t instance,
+void for_each_triangle(const PersistentRayShape& of, std::uint32_t instance,
                        const std::function<void(const RayTriangle&)>& visit);
 
 }  // namespace granita

@@ -46,8 +46,9 @@ TEST_P(Lifespans, StillSquareCoversItsShareOfTheShutter) {
                     mean += p.alpha(x, y) / 256;
                 }
             // Pixels of their own times: at each end one sample is there or not.
-            if (sampling == Sampling::Independent)
+            if (sampling == Sampling::Independent) {
                 EXPECT_WITHIN(mean, share, 4 * std::sqrt(ends * .25 / 256) / 64 + 1e-6);
+            }
         }
 }
 

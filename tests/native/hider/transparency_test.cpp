@@ -265,8 +265,9 @@ TEST_P(Transparency, MixedGridsAreClassifiedByMicropolygon) {
     for (int x = 8; x < 12; ++x) {
         double column = 0;
         for (int y = 0; y < 16; ++y) column += p.alpha(x, y) / 16;
-        // Linear from 1 at x = 8 to 0 at x = 12; of x each 64th of a pixel has one sample.
-        EXPECT_WITHIN(column, 1 - (x + .5 - 8) / 4, 4 * .25 / 64 / std::sqrt(12 * 16 * 64));
+        // Linear from 1 at x = 8 to 0 at x = 12; of x each 64th of a pixel has one sample, and the
+        // pixels of a block share a sequence, so a column may err as one pixel.
+        EXPECT_WITHIN(column, 1 - (x + .5 - 8) / 4, 4 * .25 / 64 / std::sqrt(12 * 64));
     }
     EXPECT_LT(shot.statistics.get(Counter::FragmentsStored), 4u * 17 * 64 * 4);
 }

@@ -254,7 +254,7 @@ TEST(NodeProgram, no_step_runs_after_a_cancel) {
                     {slot}};
     };
     const std::vector<Step> steps{step(0, false), step(1, true), step(2, false)};
-    const Program program(std::vector<Load>{}, steps, 3, {0, 1, 2});
+    const Program program(std::vector<Load>{}, steps, {1, 1, 1}, {0, 1, 2});
     ShadingInput input;
     input.progress = &progress;
     granita::Run run = program.prepare(input, 1);

@@ -164,7 +164,7 @@ TEST(MeshRayStore, layers_are_what_a_ray_meets_on_its_way) {
 }
 
 TEST(MeshRays, one_mesh_serves_rays_that_end_and_rays_that_go_on) {
-    auto kept = std::make_shared<KeptRays>();
+    auto kept = std::make_shared<PersistentRays>();
     const auto scene = squares(1, 0.0f, {1.0f, 0.0f});
     Report report;
     const Progress progress;

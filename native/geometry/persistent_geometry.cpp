@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/kept_geometry.h"
+#include "geometry/persistent_geometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,8 +36,8 @@ float GeometryParts::largest_radius() {
     return m_largest_radius;
 }
 
-std::shared_ptr<GeometryParts> KeptGeometry::find(const std::shared_ptr<const GeometryData>& data,
-                                                  float frame_time) {
+std::shared_ptr<GeometryParts> PersistentGeometry::find(
+    const std::shared_ptr<const GeometryData>& data, float frame_time) {
     const std::lock_guard lock(m_mutex);
     std::shared_ptr<GeometryParts>& parts = m_parts[{data.get(), frame_time}];
     if (!parts) {
@@ -47,7 +47,7 @@ std::shared_ptr<GeometryParts> KeptGeometry::find(const std::shared_ptr<const Ge
     return parts;
 }
 
-void KeptGeometry::keep_only(const GeometryList& geometries) {
+void PersistentGeometry::keep_only(const GeometryList& geometries) {
     const std::set<const GeometryData*> there = geometries.members();
     const std::lock_guard lock(m_mutex);
     std::erase_if(m_parts, [&](const auto& entry) { return !there.contains(entry.first.first); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/kept_visibility.h"
+#include "render/persistent_visibility.h"
 
 #include <algorithm>
 #include <unordered_set>
@@ -27,7 +27,7 @@ std::uint64_t bytes_of(const std::vector<T>& values) {
     return values.size() * sizeof(T);
 }
 
-std::uint64_t bytes_of(const KeptVisibility::Bucket& bucket) {
+std::uint64_t bytes_of(const PersistentVisibility::Bucket& bucket) {
     std::uint64_t bytes = 0;
     for (const TileStore& store : bucket.hider->finish())
         bytes += bytes_of(store.key) + bytes_of(store.id) + store.lists.total() * sizeof(Fragment);
@@ -38,10 +38,11 @@ std::uint64_t bytes_of(const KeptVisibility::Bucket& bucket) {
 
 }  // namespace
 
-KeptVisibility::KeptVisibility(std::shared_ptr<const Scene> scene, std::shared_ptr<const View> view,
-                               std::shared_ptr<Statistics> statistics, const ShadingSystem& shading,
-                               const Rect& sample_pixels, int buckets,
-                               std::shared_ptr<const SampleLevels> levels)
+PersistentVisibility::PersistentVisibility(std::shared_ptr<const Scene> scene,
+                                           std::shared_ptr<const View> view,
+                                           std::shared_ptr<Statistics> statistics,
+                                           const ShadingSystem& shading, const Rect& sample_pixels,
+                                           int buckets, std::shared_ptr<const SampleLevels> levels)
     : m_scene(std::move(scene)),
       m_diced_scene(m_scene),
       m_view(std::move(view)),
@@ -56,10 +57,10 @@ KeptVisibility::KeptVisibility(std::shared_ptr<const Scene> scene, std::shared_p
       m_levels(std::move(levels)),
       m_buckets(static_cast<std::size_t>(buckets)) {}
 
-KeptVisibility::~KeptVisibility() = default;
+PersistentVisibility::~PersistentVisibility() = default;
 
-std::vector<KeptVisibility::Traits> KeptVisibility::traits_of(const Scene& scene,
-                                                              const ShadingSystem& shading) {
+std::vector<PersistentVisibility::Traits> PersistentVisibility::traits_of(
+    const Scene& scene, const ShadingSystem& shading) {
     std::vector<Traits> traits;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const auto material = static_cast<int>(m);
@@ -69,12 +70,12 @@ std::vector<KeptVisibility::Traits> KeptVisibility::traits_of(const Scene& scene
     return traits;
 }
 
-bool KeptVisibility::is_of_size(const Scene& scene) const {
+bool PersistentVisibility::is_of_size(const Scene& scene) const {
     const Options &a = m_scene->options, &b = scene.options;
     return a.width == b.width && a.height == b.height && a.crop == b.crop && a.samples == b.samples;
 }
 
-bool KeptVisibility::displaces_alike(const Scene& now, const SceneChanges& changes) const {
+bool PersistentVisibility::displaces_alike(const Scene& now, const SceneChanges& changes) const {
     if ((changes.parts & part::kRest) != 0 || image_times(*m_scene) != m_image_times) return false;
     for (std::size_t m = 0; m < now.materials.size(); ++m)
         if (changes.materials[m] &&
@@ -83,8 +84,8 @@ bool KeptVisibility::displaces_alike(const Scene& now, const SceneChanges& chang
     return true;
 }
 
-bool KeptVisibility::serves(const Scene& now, const SceneChanges& changes,
-                            const ShadingSystem& shading, const Rect& sample_pixels) const {
+bool PersistentVisibility::serves(const Scene& now, const SceneChanges& changes,
+                                  const ShadingSystem& shading, const Rect& sample_pixels) const {
     if ((changes.parts & part::kReadByHiding) != 0 || sample_pixels != m_sample_pixels)
         return false;
     if (!displaces_alike(now, changes) || m_requests != shading.requests()) return false;
@@ -105,8 +106,8 @@ bool KeptVisibility::serves(const Scene& now, const SceneChanges& changes,
     return true;
 }
 
-void KeptVisibility::renew(std::shared_ptr<const Scene> scene, const SceneChanges& changes,
-                           const ShadingSystem& shading) {
+void PersistentVisibility::renew(std::shared_ptr<const Scene> scene, const SceneChanges& changes,
+                                 const ShadingSystem& shading) {
     // What shaded_grids() lends stays: a grid that forgot would take from itself.
     bool all = (changes.parts & part::kReadByShading & ~part::kMaterials & ~part::kPasses) != 0;
     for (std::size_t m = 0; m < m_traits.size(); ++m)
@@ -121,7 +122,7 @@ void KeptVisibility::renew(std::shared_ptr<const Scene> scene, const SceneChange
             const bool is_other =
                 grid.material >= 0 && changes.materials[static_cast<std::size_t>(grid.material)];
             const bool lacks_channels = wants_channels && grid.channels.empty();
-            const bool was_found = grid.light_share > 0.0f || grid.told;
+            const bool was_found = grid.light_budget > 0.0f || grid.told;
             if (all || is_other || lacks_channels || grid.broken_radiance || !was_found)
                 shared.forget_radiance();
         });
@@ -130,7 +131,8 @@ void KeptVisibility::renew(std::shared_ptr<const Scene> scene, const SceneChange
     m_scene = std::move(scene);
 }
 
-std::shared_ptr<const ShadedGrids> KeptVisibility::shaded_grids(const SceneChanges& changes) const {
+std::shared_ptr<const ShadedGrids> PersistentVisibility::shaded_grids(
+    const SceneChanges& changes) const {
     if ((changes.parts & part::kReadByShading) != 0 || image_times(*m_scene) != m_image_times)
         return nullptr;
     auto grids = std::make_shared<ShadedGrids>();
@@ -139,11 +141,11 @@ std::shared_ptr<const ShadedGrids> KeptVisibility::shaded_grids(const SceneChang
     return grids;
 }
 
-void KeptVisibility::forget_samples() {
+void PersistentVisibility::forget_samples() {
     for (const auto& bucket : m_buckets) bucket->hider.reset();
 }
 
-void KeptVisibility::keep(int index, Bucket bucket) {
+void PersistentVisibility::keep(int index, Bucket bucket) {
     if (m_given_up) return;
     for (std::size_t slot = 0; slot < bucket.seen.size(); ++slot) {
         if (bucket.grids[slot]->grid().broken_opacity) give_up();  // which is to be said again
@@ -155,7 +157,7 @@ void KeptVisibility::keep(int index, Bucket bucket) {
     m_buckets[static_cast<std::size_t>(index)] = std::make_unique<Bucket>(std::move(bucket));
 }
 
-void KeptVisibility::end_picture() {
+void PersistentVisibility::end_picture() {
     // Of those that only tell others; while buckets were rendered other threads might tell.
     std::unordered_set<const SharedGrid*> counted;
     std::unordered_set<SharedGrid*> asking;
@@ -181,12 +183,12 @@ void KeptVisibility::end_picture() {
     if (m_bytes > kMostBytes) give_up();
 }
 
-bool KeptVisibility::is_whole() const {
+bool PersistentVisibility::is_whole() const {
     return !m_given_up &&
            std::ranges::all_of(m_buckets, [](const auto& b) { return b != nullptr; });
 }
 
-void KeptVisibility::say(GeometryCache& geometries, Report& report) const {
+void PersistentVisibility::say(GeometryCache& geometries, Report& report) const {
     report.add(m_said);
     for (const std::size_t geometry : m_opened) geometries.say(*m_scene, geometry, report);
 }

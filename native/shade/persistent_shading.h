@@ -5,22 +5,22 @@
 
 #include <memory>
 
-#include "geometry/kept_geometry.h"
-#include "shade/rays/kept_rays.h"
+#include "geometry/persistent_geometry.h"
+#include "shade/rays/persistent_rays.h"
 #include "shade/shaded_grids.h"
 
 namespace granita {
 
-struct KeptOffsets;  // shade/material_displacement.h
+struct PersistentOffsets;  // shade/material_displacement.h
 
-struct KeptShading {
-    std::shared_ptr<KeptGeometry> geometry = std::make_shared<KeptGeometry>();
-    std::shared_ptr<KeptRays> rays = std::make_shared<KeptRays>();
+struct PersistentShading {
+    std::shared_ptr<PersistentGeometry> geometry = std::make_shared<PersistentGeometry>();
+    std::shared_ptr<PersistentRays> rays = std::make_shared<PersistentRays>();
     /// Of an earlier picture in which nothing that shading reads was another, but for grids
     /// themselves; may be nullptr.
     std::shared_ptr<const ShadedGrids> grids;
     /// Of an earlier picture with the same offsets, or nullptr.
-    std::shared_ptr<KeptOffsets> offsets;
+    std::shared_ptr<PersistentOffsets> offsets;
 };
 
 }  // namespace granita

@@ -50,7 +50,7 @@ class GeometryParts {
 };
 
 /// Thread-safe.
-class KeptGeometry {
+class PersistentGeometry {
   public:
     std::shared_ptr<GeometryParts> find(const std::shared_ptr<const GeometryData>& data,
                                         float frame_time);

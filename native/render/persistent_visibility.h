@@ -21,7 +21,7 @@
 namespace granita {
 
 /// Belongs to one job at a time, whose threads fill it bucket by bucket.
-class KeptVisibility {
+class PersistentVisibility {
   public:
     struct Bucket {
         std::unique_ptr<Hider> hider;  ///< finished, without samples
@@ -41,11 +41,11 @@ class KeptVisibility {
     };
 
     /// `statistics`: in which the grids' memory is counted; `levels`: whose samples they are.
-    KeptVisibility(std::shared_ptr<const Scene> scene, std::shared_ptr<const View> view,
-                   std::shared_ptr<Statistics> statistics, const ShadingSystem& shading,
-                   const Rect& sample_pixels, int buckets,
-                   std::shared_ptr<const SampleLevels> levels);
-    ~KeptVisibility();
+    PersistentVisibility(std::shared_ptr<const Scene> scene, std::shared_ptr<const View> view,
+                         std::shared_ptr<Statistics> statistics, const ShadingSystem& shading,
+                         const Rect& sample_pixels, int buckets,
+                         std::shared_ptr<const SampleLevels> levels);
+    ~PersistentVisibility();
 
     /// Whether it is of a picture of the same pixels and samples: what it is looked up by.
     bool is_of_size(const Scene& scene) const;
@@ -58,7 +58,7 @@ class KeptVisibility {
     /// Whether displacement in a picture of the scene moves everything as it did here.
     bool displaces_alike(const Scene& now, const SceneChanges& changes) const;
     /// nullptr where nothing is displaced.
-    const std::shared_ptr<KeptOffsets>& offsets() const { return m_offsets; }
+    const std::shared_ptr<PersistentOffsets>& offsets() const { return m_offsets; }
     /// Its grids for a picture that may see others, or nullptr where these are not under the same
     /// light.  It must outlive them.
     std::shared_ptr<const ShadedGrids> shaded_grids(const SceneChanges& changes) const;
@@ -105,7 +105,7 @@ class KeptVisibility {
     std::vector<Traits> m_traits;                           ///< [materials]
     std::vector<std::vector<AttributeRequest>> m_requests;  ///< [materials + 1]
     Options m_channels;  ///< of grids that hold some: they stay while none are asked for
-    std::shared_ptr<KeptOffsets> m_offsets;
+    std::shared_ptr<PersistentOffsets> m_offsets;
     bool m_shares_light;  ///< grids know those around them
     Rect m_sample_pixels;
     std::shared_ptr<Statistics> m_statistics;

@@ -38,7 +38,7 @@ struct RayKey {
     bool operator==(const RayKey&) const = default;
 };
 
-struct KeptRayShape {
+struct PersistentRayShape {
     RayKey key;
     std::unique_ptr<RayShape> shape;
     RtcHandle<RTCScene> built;
@@ -49,15 +49,15 @@ struct KeptRayShape {
 /// Thread-safe.  Owns the device that all in it belong to.  Of each geometry, displaced as an
 /// instance is or not, there are the two that were asked for last, as a view has a coarse picture
 /// and a whole one: an orbit around a subdivision surface makes another one for each place.
-class KeptRays {
+class PersistentRays {
   public:
     /// Starts Embree when first asked for; throws Error where it does not start.
     RTCDevice device();
     /// nullptr where it is not there.
-    std::shared_ptr<const KeptRayShape> find(const RayKey& key);
+    std::shared_ptr<const PersistentRayShape> find(const RayKey& key);
     /// Of what is not displaced, whatever its instances use it for; nullptr where there is none.
-    std::shared_ptr<const KeptRayShape> find_mesh(const GeometryData* data, float frame_time);
-    void add(std::shared_ptr<const KeptRayShape> made);
+    std::shared_ptr<const PersistentRayShape> find_mesh(const GeometryData* data, float frame_time);
+    void add(std::shared_ptr<const PersistentRayShape> made);
     /// Forgets what is made of others.
     void keep_only(const GeometryList& geometries);
     /// How many were added.
@@ -68,7 +68,7 @@ class KeptRays {
   private:
     static constexpr std::size_t kMostOfOne = 2;
     using Of = std::tuple<const GeometryData*, bool, std::size_t>;
-    using Shapes = std::vector<std::shared_ptr<const KeptRayShape>>;  ///< latest first
+    using Shapes = std::vector<std::shared_ptr<const PersistentRayShape>>;  ///< latest first
     static Of of(const RayKey& key) {
         return {key.data.get(), key.displacement != nullptr, key.displaced_as};
     }

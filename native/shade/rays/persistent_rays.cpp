@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "shade/rays/kept_rays.h"
+#include "shade/rays/persistent_rays.h"
 
 #include <algorithm>
 #include <new>
@@ -18,7 +18,7 @@ bool add_bytes(void* user, ssize_t bytes, bool) {
 
 }  // namespace
 
-RTCDevice KeptRays::device() {
+RTCDevice PersistentRays::device() {
     m_started.call([&] {
         m_device.reset(rtcNewDevice(nullptr));
         if (!m_device) {
@@ -31,7 +31,7 @@ RTCDevice KeptRays::device() {
     return m_device.get();
 }
 
-std::shared_ptr<const KeptRayShape> KeptRays::find(const RayKey& key) {
+std::shared_ptr<const PersistentRayShape> PersistentRays::find(const RayKey& key) {
     const std::lock_guard lock(m_mutex);
     const auto shapes = m_shapes.find(of(key));
     if (shapes == m_shapes.end()) return nullptr;
@@ -43,8 +43,8 @@ std::shared_ptr<const KeptRayShape> KeptRays::find(const RayKey& key) {
     return all.front();
 }
 
-std::shared_ptr<const KeptRayShape> KeptRays::find_mesh(const GeometryData* data,
-                                                        float frame_time) {
+std::shared_ptr<const PersistentRayShape> PersistentRays::find_mesh(const GeometryData* data,
+                                                                    float frame_time) {
     const std::lock_guard lock(m_mutex);
     const auto shapes = m_shapes.find({data, false, 0});
     if (shapes == m_shapes.end()) return nullptr;
@@ -53,8 +53,8 @@ std::shared_ptr<const KeptRayShape> KeptRays::find_mesh(const GeometryData* data
     return found == shapes->second.end() ? nullptr : *found;
 }
 
-void KeptRays::add(std::shared_ptr<const KeptRayShape> made) {
-    std::shared_ptr<const KeptRayShape> dropped;  // freed outside the lock
+void PersistentRays::add(std::shared_ptr<const PersistentRayShape> made) {
+    std::shared_ptr<const PersistentRayShape> dropped;  // freed outside the lock
     const std::lock_guard lock(m_mutex);
     Shapes& all = m_shapes[of(made->key)];
     all.insert(all.begin(), std::move(made));
@@ -64,7 +64,7 @@ void KeptRays::add(std::shared_ptr<const KeptRayShape> made) {
     all.pop_back();
 }
 
-void KeptRays::keep_only(const GeometryList& geometries) {
+void PersistentRays::keep_only(const GeometryList& geometries) {
     const std::set<const GeometryData*> there = geometries.members();
     const std::lock_guard lock(m_mutex);
     std::erase_if(m_shapes, [&](const auto& entry) {
@@ -72,7 +72,7 @@ void KeptRays::keep_only(const GeometryList& geometries) {
     });
 }
 
-std::size_t KeptRays::embree_bytes() const {
+std::size_t PersistentRays::embree_bytes() const {
     return static_cast<std::size_t>(std::max(0LL, m_bytes.load()));
 }
 
