@@ -21,6 +21,7 @@ from . import (
     final_merge,
     final_render,
     frame_statistics,
+    interrupts,
     passes,
     preview_render,
     turn_of_python,
@@ -48,6 +49,7 @@ _EXPLAINED = (
     frame_statistics.StatisticsFileError,
     PartError,
 )
+_INTERRUPTED = "interrupted"
 # Seconds for which the add-on's end waits for renders.
 _PATIENCE = 10.0
 _rendering = weakref.WeakSet()  # engines, until Blender has freed them
@@ -81,15 +83,18 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
             self.report({"ERROR"}, escaped(f"passes: {fault.traced(error)}"))
 
     def is_cancelled(self):
-        return _ends or self.test_break()
+        return _ends or self.test_break() or interrupts.came()
 
     def render(self, depsgraph):
-        turn_of_python.started()
-        stays = not self.is_preview and depsgraph.scene.render.use_persistent_data
-        self.thread = threading.get_ident()
-        _rendering.add(self)
+        stays = False
         try:
+            turn_of_python.started()
+            stays = not self.is_preview and depsgraph.scene.render.use_persistent_data
+            self.thread = threading.get_ident()
+            _rendering.add(self)
             self._render(depsgraph)
+        except KeyboardInterrupt:
+            self._fail(_INTERRUPTED)
         finally:
             if stays:
                 _rendering.discard(self)
@@ -117,13 +122,13 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
             )
         except Cancelled:
             self._give_up()
-            if not self.test_break():  # else Blender would keep an empty frame and go on
+            if interrupts.came():
+                self._fail(_INTERRUPTED)
+            elif not self.test_break():  # else Blender would keep an empty frame and go on
                 ended = "the add-on was switched off"
                 self._fail(ended if _ends else "the render stopped without being asked to")
         except _EXPLAINED as error:
             self._fail(str(error))
-        except KeyboardInterrupt:
-            self._fail("interrupted")
         except Exception as error:
             self._fail(fault.traced(error))
 
@@ -193,6 +198,7 @@ def _end_renders():
 def register():
     bpy.utils.register_class(GranitaRenderEngine)
     _add_handlers()
+    interrupts.register()
     turn_of_python.register()
     loop.register()
 
@@ -200,6 +206,7 @@ def register():
 def unregister():
     loop.unregister()
     turn_of_python.unregister()
+    interrupts.unregister()
     _remove_handlers()
     _end_renders()
     turn_of_python.started()  # nobody else tells any more that they have

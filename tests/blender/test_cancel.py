@@ -126,6 +126,50 @@ def test_interrupt(scene, tmp_path, make, stage, delay):
     assert seconds < PROMISED_SECONDS, text
 
 
+# Ctrl-C where what it raises is dropped: in a callback of a weak reference, and in a handler of Blender's between frames.
+DROPPED = {
+    "export": (
+        """
+import os, signal, weakref, granita.final_render as final_render
+class Thing: pass
+export = final_render.FinalRender._export
+def interrupted(self):
+    thing = Thing()
+    reference = weakref.ref(thing, lambda _: os.kill(os.getpid(), signal.SIGINT))
+    del thing
+    return export(self)
+final_render.FinalRender._export = interrupted
+""",
+        0,
+    ),
+    "between frames": (
+        """
+import bpy, os, signal
+def interrupt(*_):
+    os.kill(os.getpid(), signal.SIGINT)
+    for _ in range(1000):
+        pass
+bpy.app.handlers.render_write.append(interrupt)
+""",
+        1,
+    ),
+}
+
+
+@pytest.mark.parametrize("moment", DROPPED)
+def test_an_interrupt_that_python_drops_ends_the_render_all_the_same(scene, tmp_path, moment):
+    parts.add_camera(scene)
+    parts.add_square(scene)
+    parts.multilayer_exr(scene)
+    blend = tmp_path / "frames.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend), copy=True)
+    prepare, saved = DROPPED[moment]
+    outcome = render_host.run(blend, tmp_path / "out", prepare, last=3)
+    assert outcome.code == 1, outcome.output
+    assert len(outcome.files) == saved, outcome.output
+    assert "Traceback" not in outcome.output or "KeyboardInterrupt" in outcome.output
+
+
 class _Rendering:
     """Stands for an engine that renders in a thread."""
 
