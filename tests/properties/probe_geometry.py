@@ -46,7 +46,8 @@ def _mesh(scene):
         "face": mesh.polygons[20],
         "vertex": mesh.vertices[24],
         "edge": mesh.edges[30],
-        "uv layer": second,
+        # What `new` gave is gone since the colours came.
+        "uv layer": mesh.uv_layers["Second"],
         "colors": mesh.color_attributes,
     }
 

@@ -105,17 +105,22 @@ def _part_flips(probe, path, part, name, seen):
 
 
 def _member_flips(probe, path, struct, rna, seen):
-    """Of a collection's first member and its last."""
+    """Of a collection's first member and its last; Blender's own attributes, with a dot before the name, are not seen."""
     name = rna.identifier
     if name == "inputs" and isinstance(struct, bpy.types.Node):
         return _socket_flips(probe, path, struct)
     if name in unwalked.names("collections"):
         return []
     members = getattr(struct, name)
+    places = [i for i, member in enumerate(members) if not _is_hidden(member)]
     found = []
-    for place in sorted({0, len(members) - 1}) if len(members) else ():
+    for place in sorted({*places[:1], *places[-1:]}):
         found += _part_flips(probe, (*path, name, place), members[place], name, seen)
     return found
+
+
+def _is_hidden(member):
+    return isinstance(member, bpy.types.Attribute) and member.name.startswith(".")
 
 
 def can_be_flipped(socket):
