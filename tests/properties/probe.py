@@ -11,7 +11,7 @@ class Probe:
 
     name: str
     build: Callable  # (empty scene) -> {root's name: struct}
-    walked: tuple = ()  # names of roots whose properties are flipped
+    walked: tuple = ()  # roots whose properties are flipped, or parts of them ("scene.cycles_curves")
     deeds: dict = field(
         default_factory=dict
     )  # {name: function(roots)}: changes that are no properties

@@ -82,7 +82,7 @@ def _curve(kind):
 
 def _hair_curves(scene):
     _shown(scene)
-    if hasattr(bpy.data, "hair_curves") and hasattr(bpy.types.Curves, "add_curves"):
+    if hasattr(bpy.data, "hair_curves") and "add_curves" in bpy.types.Curves.bl_rna.functions:
         data = bpy.data.hair_curves.new("Hair")
         data.add_curves([4] * 12)
         points = np.zeros((48, 3), dtype=np.float32)
@@ -205,6 +205,5 @@ def probes():
         Probe("point cloud", _points, (), _SCALES),
     ]
     for kind in _rendered_modifiers():
-        walked = ("modifier", "mesh.cycles") if kind == "SUBSURF" else ("modifier",)
-        found.append(Probe(f"modifier {kind}", _modified(kind), walked, {}, _MODIFIERS))
+        found.append(Probe(f"modifier {kind}", _modified(kind), ("modifier",), {}, _MODIFIERS))
     return found

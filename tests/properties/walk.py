@@ -54,10 +54,14 @@ def flips(probe, roots):
     """All flips of a probe whose scene stands."""
     found = []
     for name in probe.walked:
-        if name in roots and probe.sockets is not None:
-            found += _socket_flips(probe, (name,), roots[name])
-        elif name in roots:
-            found += _struct_flips(probe, (name,), roots[name], set())
+        path = tuple(name.split("."))
+        if path[0] not in roots:
+            continue
+        struct = find(roots, path)
+        if probe.sockets is not None:
+            found += _socket_flips(probe, path, struct)
+        else:
+            found += _struct_flips(probe, path, struct, set())
     for name in probe.deeds:
         found.append(Flip(probe.name, name, "done", (), name))
     return found
