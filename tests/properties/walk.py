@@ -34,11 +34,13 @@ class Flip:
         """Makes the change; whether there was one."""
         if not self.path:
             return probe.deeds[self.name](roots) is not False
+        within = [find(roots, self.path[:steps]) for steps in range(1, len(self.path))]
+        curves = [struct for struct in within if isinstance(struct, bpy.types.CurveMapping)]
+        for curve in curves:
+            curve.use_clip = False  # its editor lets no point leave the range else
         is_taken = assign(find(roots, self.path), self.name, self.value)
-        for steps in range(1, len(self.path)):
-            struct = find(roots, self.path[:steps])
-            if isinstance(struct, bpy.types.CurveMapping):
-                struct.update()  # as its editor does
+        for curve in curves:
+            curve.update()  # as its editor does
         return is_taken
 
 
