@@ -14,6 +14,7 @@ import importlib
 import importlib.util
 import os
 import shutil
+import signal
 import sys
 import tempfile
 import traceback
@@ -50,6 +51,12 @@ def find_native_module():
         return
 
 
+def heed_interrupts():
+    """A shell has its background jobs ignore Ctrl-C, and so would all that they start."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
 def enable_addon():
     import addon_utils
 
@@ -72,6 +79,7 @@ def leave_engine():
 def main(arguments):
     import bpy  # noqa: F401  (first: Blender's own modules are found through it)
 
+    heed_interrupts()
     private_scripts()
     enable_addon()
     find_native_module()
