@@ -83,7 +83,7 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
             self.report({"ERROR"}, escaped(f"passes: {fault.traced(error)}"))
 
     def is_cancelled(self):
-        return _ends or self.test_break() or interrupts.came()
+        return _ends or self.test_break() or interrupts.came() and not self.is_preview
 
     def render(self, depsgraph):
         stays = False
@@ -139,6 +139,8 @@ class GranitaRenderEngine(bpy.types.RenderEngine):
                 written_frames.is_rendered()
         except _EXPLAINED as error:
             self._fail(str(error))
+        except KeyboardInterrupt:
+            self._fail(_INTERRUPTED)
 
     def view_update(self, context, depsgraph):
         with _told(self):

@@ -6,6 +6,7 @@ is printed at most, and dropped: the render would go on, and a farm that has ask
 asks whether to stop asks here as well.  Blender's own program has its own way, and scripts may have theirs: those stay.
 """
 
+import contextlib
 import signal
 
 from .handlers import registration
@@ -20,23 +21,27 @@ def came():
 
 def _note(number, frame):
     global _came
-    _came = True
-    signal.default_int_handler(number, frame)
+    if not _came:  # a second one would end what tells of the first
+        _came = True
+        signal.default_int_handler(number, frame)
 
 
 def _listen(*_):
     global _came
-    _came = False
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        try:
-            signal.signal(signal.SIGINT, _note)
-        except ValueError:  # not the main thread: no Ctrl-C comes to it
-            pass
+    _replace(signal.default_int_handler, _note)
+    _came = False  # one that comes before raises, and stays noted
 
 
 def _leave(*_):
-    if signal.getsignal(signal.SIGINT) is _note:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+    global _came
+    _came = False
+    _replace(_note, signal.default_int_handler)
+
+
+def _replace(old, new):
+    if signal.getsignal(signal.SIGINT) is old:
+        with contextlib.suppress(ValueError):  # not the main thread: no Ctrl-C comes to it
+            signal.signal(signal.SIGINT, new)
 
 
 register, _remove_handlers = registration(

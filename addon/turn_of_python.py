@@ -104,6 +104,5 @@ _HANDLERS = (
     ("render_cancel", started),
     ("render_complete", started),
 )
-# Without a window nothing draws, and an interrupt that comes within a handler would be lost on the render: Blender prints
-# what handlers raise and goes on.
+# Without a window nothing draws.
 register, unregister = registration(*(() if bpy.app.background else _HANDLERS))

@@ -21,11 +21,6 @@ if(GRANITA_SANITIZE)
   target_compile_options(granita_flags INTERFACE -fsanitize=${GRANITA_SANITIZE} -fno-omit-frame-pointer -g1
     -Wno-maybe-uninitialized)
   target_link_options(granita_flags INTERFACE -fsanitize=${GRANITA_SANITIZE})
-  # Else libraries call what the compiler put of the standard library into a test program, and races of theirs
-  # seem to be Granita's.
-  set(is_program $<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>)
-  target_link_options(granita_flags INTERFACE
-    $<${is_program}:-Wl,--version-script=${CMAKE_CURRENT_LIST_DIR}/nothing_exported.map>)
 endif()
 
 # Most of a file's seconds go into headers that all of them share (docs/decisions/building.md).  Sanitizers and

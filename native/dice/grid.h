@@ -163,7 +163,7 @@ struct Grid {
 
     /// Part of the light samples of a point that radiance was made with; 0 = not shaded, or not to
     /// the end.
-    float light_budget = 0.0f;
+    float light_fraction = 0.0f;
     /// What its points tell grids around (shade/told_light.h), by what part of their light samples,
     /// and what they were told by these, of a grid that is kept.  nullptr: they tell nothing.
     std::shared_ptr<const ToldLight> told;

@@ -113,7 +113,7 @@ void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& stati
             }
         const StageTimer timer(statistics, Stage::Shade);
         const Stopwatch watch;
-        const bool is_shaded = m_grid->light_budget > 0.0f && m_grid->told_around == told;
+        const bool is_shaded = m_grid->light_fraction > 0.0f && m_grid->told_around == told;
         // What an end that is cut short leaves of it is no beginning: who tries again begins anew.
         auto begun = std::exchange(m_begun, nullptr);
         if (!begun && !is_shaded && !shading.leaves_to_samples(*m_grid)) {
@@ -130,7 +130,7 @@ void SharedGrid::ensure_radiance(const ShadingSystem& shading, Statistics& stati
 }
 
 void SharedGrid::drop_radiance() {
-    m_grid->light_budget = 0.0f;
+    m_grid->light_fraction = 0.0f;
     m_grid->sharpness = 0.0f;
     m_grid->broken_radiance = false;
     m_grid->radiance.clear();

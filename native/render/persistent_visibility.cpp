@@ -122,7 +122,7 @@ void PersistentVisibility::renew(std::shared_ptr<const Scene> scene, const Scene
             const bool is_other =
                 grid.material >= 0 && changes.materials[static_cast<std::size_t>(grid.material)];
             const bool lacks_channels = wants_channels && grid.channels.empty();
-            const bool was_found = grid.light_budget > 0.0f || grid.told;
+            const bool was_found = grid.light_fraction > 0.0f || grid.told;
             if (all || is_other || lacks_channels || grid.broken_radiance || !was_found)
                 shared.forget_radiance();
         });

@@ -19,7 +19,7 @@ namespace granita {
 
 /// Points of a grid, or samples in it.
 struct PointShading {
-    /// `in`, its points among it, must outlive this.
+    /// `surface` and `in`, its points among it, must outlive this.
     PointShading(const SurfaceProgram& surface, const ShadingInput& in)
         : ran(surface, in), closure(ran.take_closure()) {}
 
@@ -53,7 +53,7 @@ struct GridShading {
     bool turns = false;  ///< what is seen of it to its other side
     /// Of a point's light samples what blur leaves, and with what narrow and dense ones leave.
     float sharpness = 1.0f, fewer = 1.0f;
-    float light_budget = 0.0f;  ///< as Grid::light_budget
+    float light_fraction = 0.0f;  ///< as Grid::light_fraction
 
     GridShading() = default;
     GridShading(const GridShading&) = delete;

@@ -49,7 +49,7 @@ double ways_of_samples(const Grid& grid, const ShadingPoints& points, double see
                                          static_cast<std::size_t>(grid.vertex_count()));
     const double area = visible_area(grid, corners, scene.camera.projection);
     const float sampled = 1.0f / static_cast<float>(scene.options.samples);  // of a pixel, by one
-    const int each = light.sample_count(grid.point_share * refined_light_budget(sampled));
+    const int each = light.sample_count(grid.point_share * refined_light_fraction(sampled));
     double ways = 0.0;
     for (std::size_t i = 0; i < points.count; ++i)
         ways +=

@@ -153,7 +153,7 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
     points.count = wanted.size();
     points.terminator_offset = grid.terminator_offset;
     (camera.perspective ? points.pixel_slope : points.pixel_width) = camera.pixel;
-    points.share = grid.point_share * refined_light_budget(point_size * point_size);
+    points.share = grid.point_share * refined_light_fraction(point_size * point_size);
     for (auto* values : {&points.p, &points.normal, &points.geometric_normal, &points.view,
                          &points.dp_du, &points.dp_dv})
         values->reserve(wanted.size());

@@ -37,7 +37,7 @@ inline Vec3f between(const std::vector<Vec3f>& values, const RefinedPoint& at) {
 /// Light samples of such a point for each of a grid's: corners have those of their neighbours too,
 /// which interpolation averages.
 /// @param area that it stands for, in micropolygons.
-inline float refined_light_budget(float area) {
+inline float refined_light_fraction(float area) {
     return std::min(1.0f, 2.0f * area);
 }
 

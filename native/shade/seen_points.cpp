@@ -17,7 +17,7 @@ constexpr float kThicket = 0.33f;
 /// Light that passes what lies before a point, so that it is seen.
 constexpr float kLeastSeen = 0.02f;
 /// At a point that something moving may hide for a part of the shutter.
-constexpr int kLooks = 8;
+constexpr int kEyeRays = 8;
 
 class EyeRays {
   public:
@@ -45,11 +45,11 @@ class EyeRays {
         Ray ray;
         bool is_behind;  ///< it sees the side that is turned away at the frame time
     };
-    /// From the point to the eye, at one of kLooks times that are spread over its life.
-    EyeRay from(std::size_t i, int look) {
+    /// From the point to the eye, at one of kEyeRays times that are spread over its life.
+    EyeRay from(std::size_t i, int number) {
         const std::uint32_t place = place_in_sequence(m_points, i);
         const float frame_time = m_scene.options.frame_time;
-        const float time = m_shutter ? this->time(m_sequence(place).x, look) : frame_time;
+        const float time = m_shutter ? this->time(m_sequence(place).x, number) : frame_time;
         const Mat4d at = m_shutter ? m_eye.place(time) : m_at_frame;
         Vec3f p = m_points.p[i], normal = m_points.geometric_normal[i];
         if (m_paths.moves()) {
@@ -83,7 +83,7 @@ class EyeRays {
         return {ray, is_below != is_below_at_frame(i)};
     }
 
-    /// Whether its next looks may find something else before it, or another side of it.
+    /// Whether its next rays may find something else before it, or another side of it.
     bool may_vary(std::size_t i, const Ray& ray) const {
         return m_paths.moves() || m_rays.varies(ray.start, ray.direction, ray.distance) ||
                is_behind_for(i, m_opens) || is_behind_for(i, m_closes);
@@ -103,8 +103,8 @@ class EyeRays {
         return glm::dot(way, m_points.geometric_normal[i]) < 0.0f;
     }
 
-    float time(float uniform, int look) const {
-        const float turned = uniform + static_cast<float>(look) / kLooks;
+    float time(float uniform, int number) const {
+        const float turned = uniform + static_cast<float>(number) / kEyeRays;
         const Vec2f exposed = m_shutter->exposed(m_paths.lifespan());
         return m_shutter->time(exposed.x + (turned - std::floor(turned)) * (exposed.y - exposed.x));
     }
@@ -138,12 +138,12 @@ std::vector<std::uint8_t> off_edges(const std::vector<std::uint8_t>& marked, std
     return shrunk(shrunk(marked, 1, columns), columns, columns);
 }
 
-/// [looks] whether enough light comes through.
+/// [eye_rays] whether enough light comes through.
 std::vector<std::uint8_t> are_clear(const RayScene& rays,
-                                    const std::vector<EyeRays::EyeRay>& looks) {
+                                    const std::vector<EyeRays::EyeRay>& eye_rays) {
     std::vector<Ray> asked;
-    asked.reserve(looks.size());
-    for (const EyeRays::EyeRay& look : looks) asked.push_back(look.ray);
+    asked.reserve(eye_rays.size());
+    for (const EyeRays::EyeRay& one : eye_rays) asked.push_back(one.ray);
     std::vector<Vec3f> left(asked.size());
     rays.transmittances(asked, left);
     std::vector<std::uint8_t> clear(asked.size());
@@ -154,33 +154,33 @@ std::vector<std::uint8_t> are_clear(const RayScene& rays,
 /// At points before which something moves: those that are seen for a part of the shutter are lit as
 /// they are then.  Light of the rest is that of places inside of things, which went into the mean.
 /// Returns the points whose other side is seen more often.
-std::vector<std::size_t> trace_again(ShadingPoints& points, EyeRays& looks, const RayScene& rays,
+std::vector<std::size_t> trace_again(ShadingPoints& points, EyeRays& eye_rays, const RayScene& rays,
                                      const std::vector<EyeRays::EyeRay>& first,
                                      std::vector<std::uint8_t>& seen) {
     std::vector<std::size_t> doubtful, turned;
     std::vector<EyeRays::EyeRay> asked;
     for (std::size_t i = 0; i < points.count; ++i) {
-        if (!looks.may_vary(i, first[i].ray)) continue;
+        if (!eye_rays.may_vary(i, first[i].ray)) continue;
         doubtful.push_back(i);
-        for (int look = 1; look < kLooks; ++look) asked.push_back(looks.from(i, look));
+        for (int number = 1; number < kEyeRays; ++number) asked.push_back(eye_rays.from(i, number));
     }
     const std::vector<std::uint8_t> clear = are_clear(rays, asked);
     for (std::size_t k = 0; k < doubtful.size(); ++k) {
         const std::size_t i = doubtful[k];
         std::vector<float> times;
         int behind = 0;
-        const auto see = [&](const EyeRays::EyeRay& look) {
-            times.push_back(look.ray.time);
-            behind += look.is_behind;
+        const auto see = [&](const EyeRays::EyeRay& one) {
+            times.push_back(one.ray.time);
+            behind += one.is_behind;
         };
         if (seen[i]) see(first[i]);
-        for (std::size_t at = k * (kLooks - 1); at < (k + 1) * (kLooks - 1); ++at)
+        for (std::size_t at = k * (kEyeRays - 1); at < (k + 1) * (kEyeRays - 1); ++at)
             if (clear[at]) see(asked[at]);
         seen[i] = !times.empty();
         if (2 * behind > static_cast<int>(times.size())) turned.push_back(i);
-        if (times.empty() || times.size() == kLooks) continue;
-        points.visible_intervals.resize(points.count);
-        points.visible_intervals[i] = std::move(times);
+        if (times.empty() || times.size() == kEyeRays) continue;
+        points.visible_times.resize(points.count);
+        points.visible_times[i] = std::move(times);
     }
     return turned;
 }
@@ -190,13 +190,13 @@ std::vector<std::size_t> trace_again(ShadingPoints& points, EyeRays& looks, cons
 std::vector<std::size_t> look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
                                  const RayScene& rays, const Scene& scene, const MovingEye& eye,
                                  const ShutterWarp* shutter, float edge) {
-    EyeRays looks(points, paths, key, rays, scene, eye, shutter);
+    EyeRays eye_rays(points, paths, key, rays, scene, eye, shutter);
     std::vector<EyeRays::EyeRay> asked;
     asked.reserve(points.count);
-    for (std::size_t i = 0; i < points.count; ++i) asked.push_back(looks.from(i, 0));
+    for (std::size_t i = 0; i < points.count; ++i) asked.push_back(eye_rays.from(i, 0));
     std::vector<std::uint8_t> seen = are_clear(rays, asked);
     std::vector<std::size_t> turned;
-    if (shutter) turned = trace_again(points, looks, rays, asked, seen);
+    if (shutter) turned = trace_again(points, eye_rays, rays, asked, seen);
     if (std::ranges::count(seen, 0) == 0) return turned;
     const std::vector<std::uint8_t> inside = off_edges(seen, points.columns);
     const auto all_seen = static_cast<float>(std::ranges::count(seen, 1));

@@ -17,13 +17,13 @@ namespace granita {
 
 /// Fills `seen`: whether each point is through some point of the lens, without bounces its middle,
 /// at some time of the shutter, one of each that it asks, or eight times where something moves
-/// before it; `visible_intervals`: which of these; and `shares`: all light samples next to what is
+/// before it; `visible_times`: which of these; and `shares`: all light samples next to what is
 /// seen, few out of sight and, in thickets, `edge` of them where what is seen ends.  Few ways cost
 /// noise, which few see, or none among that of edges; and `thicket`.  The same whatever bucket
 /// asks; all stay empty where all is seen.
 /// @param points of the grid of `key`, lifted.
 /// @param shutter nullptr where nothing moves.
-/// @param edge part of the light samples, at most 1 (edge_light_budget()).
+/// @param edge part of the light samples, at most 1 (edge_light_fraction()).
 /// @return points of which the side that is turned away at the frame time is seen more often.
 std::vector<std::size_t> look_at(ShadingPoints& points, const PointPaths& paths, const GridKey& key,
                                  const RayScene& rays, const Scene& scene, const MovingEye& eye,

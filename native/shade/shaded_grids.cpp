@@ -42,7 +42,7 @@ bool same_before_shading(const Grid& a, const Grid& b) {
 }  // namespace
 
 void ShadedGrids::add(const Grid& grid) {
-    if ((grid.light_budget > 0.0f || grid.told) && !grid.broken_radiance)
+    if ((grid.light_fraction > 0.0f || grid.told) && !grid.broken_radiance)
         m_grids.emplace(grid.key, &grid);
 }
 
@@ -58,7 +58,7 @@ void take_shading(const Grid& from, Grid& to) {
     to.found_alone = from.found_alone;
     to.unsettled = from.unsettled;
     to.channels = from.channels;
-    to.light_budget = from.light_budget;
+    to.light_fraction = from.light_fraction;
     to.told_around = from.told_around;
 }
 

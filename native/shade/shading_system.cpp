@@ -219,7 +219,7 @@ struct ShadingSystem::Impl : PointShader {
             grid.told = same->told;
             grid.told_share = same->told_share;
         }
-        if (!is_enough(same->light_budget)) return grid.told != nullptr;
+        if (!is_enough(same->light_fraction)) return grid.told != nullptr;
         take_shading(*same, grid);
         statistics.add(Counter::GridsShadedBefore);
         return true;
@@ -233,7 +233,7 @@ struct ShadingSystem::Impl : PointShader {
     std::vector<std::size_t> look(const Grid& grid, ShadingPoints& points, const PointPaths& at,
                                   float narrow) const {
         const float edge =
-            bounces ? std::min(1.0f, edge_light_budget(scene.options.samples) / narrow) : 1.0f;
+            bounces ? std::min(1.0f, edge_light_fraction(scene.options.samples) / narrow) : 1.0f;
         return look_at(points, at, grid.key, *light->rays(), scene, eye, moves ? &shutter : nullptr,
                        edge);
     }
@@ -396,15 +396,15 @@ std::shared_ptr<GridShading> ShadingSystem::begin_radiance(Grid& grid, bool anew
     }
     const bool lit = m_impl->reflects(grid.material);
     const float sharpness = lit || m_impl->can_refine(grid) ? m_impl->sharpness(grid) : 1.0f;
-    const float dense = lit && m_impl->light ? dense_light_budget(grid, m_impl->scene) : 1.0f;
+    const float dense = lit && m_impl->light ? dense_light_fraction(grid, m_impl->scene) : 1.0f;
     const float share = grid.point_share * sharpness * m_impl->edge_share(grid) * dense;
     if (!anew && m_impl->take_earlier(grid, share)) return nullptr;
     auto begun = m_impl->begin(grid, lit, sharpness, dense);
     if (!begun) {
-        grid.light_budget = share;  // all of it is left to samples
+        grid.light_fraction = share;  // all of it is left to samples
         return nullptr;
     }
-    begun->light_budget = share;
+    begun->light_fraction = share;
     const bool tells = begun->found && !begun->found->told->empty() && !m_impl->catches(grid);
     if (tells && !grid.told) {
         grid.told = begun->found->told;
@@ -415,7 +415,7 @@ std::shared_ptr<GridShading> ShadingSystem::begin_radiance(Grid& grid, bool anew
 
 void ShadingSystem::end_radiance(Grid& grid, GridShading& begun, const ToldLights& around) const {
     m_impl->end(grid, begun, around);
-    grid.light_budget = begun.light_budget;
+    grid.light_fraction = begun.light_fraction;
 }
 
 void ShadingSystem::shade_radiance(Grid& grid) const {

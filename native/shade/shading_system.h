@@ -66,7 +66,7 @@ class ShadingSystem {
     void shade_radiance(Grid& grid) const;
     /// Its first half: what the grid's points find by themselves, among it what they tell grids
     /// around (Grid::told).  nullptr: there is no other half, or an equal grid of an earlier
-    /// picture has told it, and has been shaded where Grid::light_budget says so.
+    /// picture has told it, and has been shaded where Grid::light_fraction says so.
     /// @param anew whatever earlier pictures have.
     std::shared_ptr<GridShading> begin_radiance(Grid& grid, bool anew = false) const;
     /// `around`: what grids near this one tell it, in the order of their keys.

@@ -221,7 +221,7 @@ def test_a_thin_sheet_shows_how_near_a_lamp_behind_it_is():
         place = (SIZE * scale / 2, SIZE * scale / 2, 10.0 + 5.0 * scale)
         snapshot["lights"] = [lamp(place, 100.0 * scale**2, casts_shadow=True)]
 
-    coarse, fine = (beside(scale, 4.0, 0.8, light) for scale in (1, 8))
+    coarse, fine = (beside(scale, 4.0, 0.8, light) for scale in (1, 6))
     assert coarse.mean(axis=(0, 1)) == pytest.approx(fine.mean(axis=(0, 1)), rel=0.03)
     assert coarse[6:10, 6:10].mean() == pytest.approx(fine[6:10, 6:10].mean(), rel=0.03)
 

@@ -4,6 +4,7 @@
 import bpy
 import scene_parts
 import stage
+import unwalked
 from probe import Probe
 
 
@@ -50,7 +51,7 @@ _LINKING = {
     "light linking": _second_collection("receiver_collection"),
     "shadow linking": _second_collection("blocker_collection"),
 }
-_OBJECT = frozenset({"data"})  # another kind of lamp is another probe
+_OBJECT = unwalked.names("lamp objects")
 
 PROBES = [
     Probe("point light", _lamp("POINT"), ("light", "object"), _LINKING, _OBJECT),

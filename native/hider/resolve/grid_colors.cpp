@@ -32,13 +32,13 @@ bool GridColors::color(const GridPool& pool, std::span<const SurfaceId> ids, Sam
     for (std::size_t s = 0; s < ids.size(); ++s) {
         if (ids[s] == kNoSurface) continue;
         // Also where it is not known, which is then done again: no branch that is hard to foretell.
-        const Lookup& look = m_lookups[pool.slot(ids[s])];
-        colors.red[s] = look.color.x;
-        colors.green[s] = look.color.y;
-        colors.blue[s] = look.color.z;
+        const Lookup& lookup = m_lookups[pool.slot(ids[s])];
+        colors.red[s] = lookup.color.x;
+        colors.green[s] = lookup.color.y;
+        colors.blue[s] = lookup.color.z;
         colors.alpha[s] = 1.0f;
-        done[s] = static_cast<std::uint8_t>(look.known);
-        all_known &= look.known;
+        done[s] = static_cast<std::uint8_t>(lookup.known);
+        all_known &= lookup.known;
     }
     return all_known == 0;
 }

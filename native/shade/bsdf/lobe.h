@@ -200,7 +200,7 @@ struct ShadingPoints {
     bool thicket = false;  ///< much of what is seen lies beside what is hidden
     /// [n] where what moves hides it for a part of the shutter: times at which it does not.  Empty
     /// vectors, or none at all: any time of its life will do.
-    std::vector<std::vector<float>> visible_intervals;
+    std::vector<std::vector<float>> visible_times;
     bool whole_faces = false;  ///< as Grid::shades_faces()
     /// The border may be an edge in which surfaces meet: not that of spheres and hair.
     bool edges = false;

@@ -139,7 +139,7 @@ float light_sample_count(const Grid& grid, const Scene& scene, const ShutterWarp
     return static_cast<float>(std::sqrt(std::min(1.0, variance)));
 }
 
-float edge_light_budget(int samples) {
+float edge_light_fraction(int samples) {
     return static_cast<float>(std::min(1.0, std::pow(samples / kEdgeSamples, 0.75)));
 }
 
@@ -147,11 +147,11 @@ float edge_light_sample_count(const Grid& grid, const Scene& scene) {
     const GeometryKind kind = scene.geometry_of(scene.instances[grid.instance]).kind;
     if (kind != GeometryKind::Curves && kind != GeometryKind::Points) return 1.0f;
     const double wide = GridOnFilm(grid, scene.camera.projection).width() / kWide;
-    return std::max(edge_light_budget(scene.options.samples),
+    return std::max(edge_light_fraction(scene.options.samples),
                     static_cast<float>(std::min(1.0, wide * wide)));
 }
 
-float dense_light_budget(const Grid& grid, const Scene& scene) {
+float dense_light_fraction(const Grid& grid, const Scene& scene) {
     const GeometryKind kind = scene.geometry_of(scene.instances[grid.instance]).kind;
     if (kind != GeometryKind::Mesh || grid.shades_faces()) return 1.0f;
     const double area = GridOnFilm(grid, scene.camera.projection).most_area();

@@ -29,7 +29,7 @@ float light_sample_count(const Grid& grid, const Scene& scene, const ShutterWarp
 /// samples^-.75, beside which that of light, which falls as n^-.95, is to be small and no more.
 /// Measured on files of hair and grass with bounces at equal seconds (docs/decisions/bounces.md):
 /// 1 of 16 at 16 samples, 2 to 3 at 64.
-float edge_light_budget(int samples);
+float edge_light_fraction(int samples);
 
 /// The same of a grid of ribbons or spheres, which a few pixels across are nothing but edges; as
 /// many as ever from 8 pixels on.  1 for all else.
@@ -43,7 +43,7 @@ float edge_light_sample_count(const Grid& grid, const Scene& scene);
 /// of its samples see one each.  Below a dicing rate of 1 a pixel is a square of that side.
 /// @param grid positions at all its knots, camera space.
 /// @return in (0, 1].
-float dense_light_budget(const Grid& grid, const Scene& scene);
+float dense_light_fraction(const Grid& grid, const Scene& scene);
 
 /// The nearest of steps a fourth root of 2 apart, of which 1 is one.  A lens that is opened a
 /// little farther leaves most grids on theirs, and with it what they were shaded

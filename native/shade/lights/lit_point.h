@@ -50,7 +50,7 @@ struct LitPoint {
     int sample_count = 1;       ///< of a soft light, of the world's image, of all lobes together
     std::uint32_t place;        ///< in the grid, along Morton's curve
     Vec2f exposed{0.0f, 1.0f};  ///< the part of the shutter's light that it is there for
-    std::span<const float> visible_intervals;  ///< as ShadingPoints' own; empty: any time of those
+    std::span<const float> visible_times;  ///< as ShadingPoints' own; empty: any time of those
     /// As ShadingPoints::rise; nullptr: normals are those of the surface.
     const Vec4f* rise = nullptr;
     float terminator_offset = 0.0f;
@@ -74,9 +74,9 @@ struct LitPoint {
     }
     /// One of the times that it is lit for, by a number in [0, 1).
     float time(const ShutterWarp& shutter, float uniform) const {
-        if (visible_intervals.empty())
+        if (visible_times.empty())
             return shutter.time(exposed.x + uniform * (exposed.y - exposed.x));
-        return one_of(visible_intervals, uniform);
+        return one_of(visible_times, uniform);
     }
     /// As lobes weigh, at least one of each; with a number in [0, 1) lobes that are due less than
     /// half a sample take one twice as often as they weigh, by systematic chance over all of them

@@ -52,21 +52,21 @@ LitSets lit_points(const LampSet& set, LitGrid& grid, const ShadingPoints& point
             place += beyond(points) * static_cast<std::uint32_t>(ahead * sample_count / count + 1);
         }
         std::vector<LitPoint>& lit = points.receives.empty() ? all : sets[points.receives[i]];
-        lit.push_back({i,
-                       std::move(bsdf),
-                       paths,
-                       ray_offset,
-                       at_frame,
-                       count,
-                       place,
-                       exposed,
-                       points.visible_intervals.empty() ? std::span<const float>()
-                                                        : points.visible_intervals[i],
-                       points.rise.empty() ? nullptr : &points.rise[i],
-                       points.terminator_offset,
-                       width_of(points, i),
-                       points.round,
-                       {}});
+        lit.push_back(
+            {i,
+             std::move(bsdf),
+             paths,
+             ray_offset,
+             at_frame,
+             count,
+             place,
+             exposed,
+             points.visible_times.empty() ? std::span<const float>() : points.visible_times[i],
+             points.rise.empty() ? nullptr : &points.rise[i],
+             points.terminator_offset,
+             width_of(points, i),
+             points.round,
+             {}});
         lit.back().share_samples(grid.placed ? std::optional(grid.sequence(choice, place)(0).x)
                                              : std::nullopt);
     }

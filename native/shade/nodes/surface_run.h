@@ -25,7 +25,7 @@ std::size_t make_finite(std::vector<Vec3f>& values);
 
 class SurfaceRun {
   public:
-    /// `in`, its points among it, must outlive this.
+    /// `surface` and `in`, its points among it, must outlive this.
     SurfaceRun(const SurfaceProgram& surface, const ShadingInput& in);
     SurfaceRun(const SurfaceRun&) = delete;
     SurfaceRun& operator=(const SurfaceRun&) = delete;

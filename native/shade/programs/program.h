@@ -120,6 +120,7 @@ class Run {
   private:
     float scale_of(float width, Shift shift, std::size_t point) const;
     std::size_t first(int slot) const {
+        GRANITA_CHECK(slot >= 0);
         const int place = m_places.first[static_cast<std::size_t>(slot)];
         GRANITA_CHECK(place >= 0);
         return m_count * static_cast<std::size_t>(place);

@@ -40,7 +40,8 @@ std::vector<std::size_t> last_uses(std::size_t slot_count, std::span<const SlotU
         for (const std::span<const int> slots : {uses[step].reads, uses[step].writes})
             for (const int slot : slots)
                 if (slot >= 0) last[static_cast<std::size_t>(slot)] = step;
-    for (const int root : roots) last[static_cast<std::size_t>(root)] = uses.size();
+    for (const int root : roots)
+        if (root >= 0) last[static_cast<std::size_t>(root)] = uses.size();
     return last;
 }
 

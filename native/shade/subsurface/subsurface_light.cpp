@@ -101,8 +101,8 @@ class SubsurfaceLight::Batch {
     /// One at which the point is seen: of samples at which they stand where they are.
     float time_at(std::size_t i, float uniform) const {
         if (!m_points.times.empty() && m_points.times[i] >= 0.0f) return m_points.times[i];
-        if (!m_points.visible_intervals.empty() && !m_points.visible_intervals[i].empty())
-            return one_of(m_points.visible_intervals[i], uniform);
+        if (!m_points.visible_times.empty() && !m_points.visible_times[i].empty())
+            return one_of(m_points.visible_times[i], uniform);
         const Vec2f exposed = m_light.m_shutter.exposed(m_paths.lifespan());
         return m_light.m_shutter.time(exposed.x + uniform * (exposed.y - exposed.x));
     }

@@ -145,7 +145,8 @@ TEST(Film, SlantedEdge) {
             for (int j = 0; j < 64; ++j)
                 for (int i = 0; i < 64; ++i)
                     area += inside(x + (i + .5) / 64, y + (j + .5) / 64) / 4096.0;
-            // Four times the errors of the worst pixels (docs/sampling_error.md); the midpoint rule.
+            // Four times the errors of the worst pixels (docs/sampling_error.md); the midpoint
+            // rule.
             EXPECT_WITHIN(box.at(x, y).w, area, 4 * .0209 + 1e-3);
             const double d = (2 + (x + .5) * slope - (y + .5)) * std::cos(.3);
             const double phi = .5 * std::erfc(-d / sigma / std::sqrt(2.0));

@@ -139,8 +139,8 @@ TEST_P(LensMotion, AShutterThatOpensOnceSeesOneInstant) {
     double worst = 0;
     for (std::size_t i = 0; i < a.combined.size(); ++i)
         worst = std::max<double>(worst, std::fabs(a.combined[i].w - b.combined[i].w));
-    // The same samples, whose lens points differ by 1/4096 of 8 pixels at most: of 64 samples an edge
-    // passes .13 on average, and four standard deviations above (Poisson) are 1.6.
+    // The same samples, whose lens points differ by 1/4096 of 8 pixels at most: of 64 samples an
+    // edge passes .13 on average, and four standard deviations above (Poisson) are 1.6.
     EXPECT_LE(worst, 1.6 / 64);
 }
 

@@ -102,8 +102,8 @@ TEST_P(Motion, MirroredInstance) {
             EXPECT_EQ(a.alpha(x, y), b.alpha(-1 - x, y));
             sum += a.alpha(x, y);
         }
-    // The parallelogram's area: its sides are vectors of the lattice, which so has as many points in
-    // it wherever it lies.
+    // The parallelogram's area: its sides are vectors of the lattice, which so has as many points
+    // in it wherever it lies.
     EXPECT_WITHIN(sum, 9 * 11 + 2 * 3, 1e-3);
 }
 

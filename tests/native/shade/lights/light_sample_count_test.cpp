@@ -143,8 +143,8 @@ TEST(LightSampleCountTest, ribbons_take_less_the_fewer_samples_and_the_narrower_
                           GeometryKind kind = GeometryKind::Curves) {
         return edge_light_sample_count(ribbons(wide, across), of_kind(kind, samples));
     };
-    EXPECT_FLOAT_EQ(count(1.0f, 16), edge_light_budget(16));
-    EXPECT_NEAR(edge_light_budget(16), std::pow(16.0 / 650.0, 0.75), 1e-6);
+    EXPECT_FLOAT_EQ(count(1.0f, 16), edge_light_fraction(16));
+    EXPECT_NEAR(edge_light_fraction(16), std::pow(16.0 / 650.0, 0.75), 1e-6);
     EXPECT_EQ(count(1.0f, 1024), 1.0f);
     EXPECT_NEAR(count(8.0f, 1), 0.75f * 0.75f, 0.1f);
     EXPECT_NEAR(count(8.0f, 1, 2), count(8.0f, 1), 0.02f);  // the ends slant
