@@ -62,7 +62,7 @@ def samples(session):
     return found
 
 
-@pytest.mark.parametrize("probe", map(_as_sample, PROBES), ids=lambda probe: probe.name)
+@pytest.mark.parametrize("probe", [*map(_as_sample, PROBES)], ids=lambda probe: probe.name)
 def test_flips_change_both_pictures_alike_or_are_told(scene, session, samples, probe):
     table = exceptions.entries(exceptions.read_parts())
     subjects = samples[probe.name]
