@@ -47,6 +47,7 @@ void for_each_triangle(const PersistentRayShape& of, std::uint32_t instance,
         if (part.corners == 0) continue;
         const auto knots = static_cast<unsigned>(part.knots);
         std::vector<const Vec3f*> points;
+        points.reserve(knots);
         for (int knot = 0; knot < part.knots; ++knot) points.push_back(points_of(part, knot));
         const std::uint32_t* indices = indices_of(part);
         corners.resize(knots);
