@@ -51,7 +51,7 @@ _LINKING = {
     "light linking": _second_collection("receiver_collection"),
     "shadow linking": _second_collection("blocker_collection"),
 }
-_OBJECT = unwalked.names("lamp objects")
+_OBJECT = unwalked.names("data")
 
 PROBES = [
     Probe("point light", _lamp("POINT"), ("light", "object"), _LINKING, _OBJECT),

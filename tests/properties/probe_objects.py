@@ -7,7 +7,7 @@ import stage
 import unwalked
 from probe import Probe
 
-_OBJECTS = unwalked.names("objects")
+_OBJECTS = unwalked.names("objects", "data")
 
 
 def _surroundings(scene, world=(0.2, 0.15, 0.3)):

@@ -5,18 +5,13 @@ import functools
 import tomllib
 from pathlib import Path
 
-TABLE = Path(__file__).with_suffix(".toml")
-
-
-def groups(path=TABLE):
-    """[{"of": str, "reason": str, "names": [str]}]."""
-    with open(path, "rb") as file:
-        return tomllib.load(file)["group"]
+# [{"of": str, "reason": str, "names": [str]}]
+GROUPS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text())["group"]
 
 
 @functools.cache
 def names(*kinds):
     """frozenset of the names of these kinds, as `of` has them."""
-    found = [group for group in groups() if group["of"] in kinds]
+    found = [group for group in GROUPS if group["of"] in kinds]
     assert {group["of"] for group in found} == set(kinds), kinds
     return frozenset(name for group in found for name in group["names"])
