@@ -57,7 +57,7 @@ void PolygonPatches::skip(std::uint32_t face) {
 void PolygonPatches::add_quad(std::uint32_t face, std::vector<BasePatch>& patches) const {
     const std::uint32_t first = m_first_corner[face];
     const Vec3f quad[4] = {point(first), point(first + 1), point(first + 2), point(first + 3)};
-    const QuadTriangles triangles = triangulate_quad(quad);
+    const QuadTriangles triangles = triangulate_quad(quad, m_data->quads_by_normal);
     const auto corner = [&](int i) {
         return first + static_cast<std::uint32_t>((triangles.start + i) % 4);
     };

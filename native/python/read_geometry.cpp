@@ -98,6 +98,7 @@ void read_faces(const Record& r, GeometryData& g) {
         vectors(r, "corner_normals", static_cast<py::ssize_t>(g.corner_verts.size()));
     g.ngon_triangles = r.values<std::int32_t>("ngon_triangles", {-1, 3});
     if (!g.ngon_triangles.empty()) check_ngon_triangles(r, g);
+    g.quads_by_normal = r.boolean("quads_by_normal", false);
     if (r.has("subdivision")) read_subdivision(r.record("subdivision"), g);
 }
 

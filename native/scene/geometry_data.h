@@ -65,6 +65,8 @@ struct GeometryData {
     /// [T][3] Blender's triangles of the faces of more than four corners, n - 2 a face, face by
     /// face: corner numbers within the face.  Empty: triangulated here.
     std::vector<std::int32_t> ngon_triangles;
+    /// Quads are cut as by Blender before 4.1 (triangulate_quad()).
+    bool quads_by_normal = false;
     std::vector<std::int32_t> curve_sizes;     ///< [C] points a curve; they follow each other
     std::vector<float> radius;                 ///< [1 or knots][V] metres, of curves and points
     std::vector<std::int32_t> material_index;  ///< [elements] slot of the instance; empty = all 0

@@ -35,9 +35,9 @@ bool is_same(const GeometryData& a, const GeometryData& b) {
            same_bytes(a.adjacent, b.adjacent) && same_bytes(a.generated, b.generated) &&
            same_bytes(a.face_sizes, b.face_sizes) && same_bytes(a.corner_verts, b.corner_verts) &&
            same_bytes(a.ngon_triangles, b.ngon_triangles) &&
-           same_bytes(a.curve_sizes, b.curve_sizes) && same_bytes(a.radius, b.radius) &&
-           same_bytes(a.material_index, b.material_index) && same_bytes(a.smooth, b.smooth) &&
-           same_bytes(a.corner_normals, b.corner_normals) &&
+           a.quads_by_normal == b.quads_by_normal && same_bytes(a.curve_sizes, b.curve_sizes) &&
+           same_bytes(a.radius, b.radius) && same_bytes(a.material_index, b.material_index) &&
+           same_bytes(a.smooth, b.smooth) && same_bytes(a.corner_normals, b.corner_normals) &&
            std::ranges::equal(a.attributes, b.attributes,
                               [](const auto& x, const auto& y) { return is_same(x, y); }) &&
            is_same(a.subdivision, b.subdivision);

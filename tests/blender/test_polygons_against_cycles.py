@@ -31,6 +31,20 @@ def add_waves(scene, faces, height, smooth=False):
     return thing
 
 
+def add_roofs(scene, height):
+    """Quads whose first and third corner are that far above the others."""
+    vertices, faces = [], []
+    for row in range(2):
+        for column in range(2):
+            x, y = column - 0.5, row - 0.5
+            faces.append(list(range(len(vertices), len(vertices) + 4)))
+            corners = ((0, -1, height), (1, 0, 0), (0, 1, height), (-1, 0, 0))
+            vertices += [(x + 0.45 * a, y + 0.45 * b, 0.45 * c) for a, b, c in corners]
+    thing = scene_parts.add_mesh(scene, "Roofs", vertices, faces)
+    thing.data.materials.append(bpy.data.materials.new("Diffuse"))
+    return thing
+
+
 def add_petals(scene, concave):
     """Faces of many corners that go up and down: which corners are joined decides what is seen."""
     random = np.random.default_rng(5)
@@ -81,6 +95,15 @@ def test_flat_waves(scene, render, faces, tilt):
     add_waves(scene, faces, 0.12).rotation_euler.x = tilt
     scene_parts.add_camera(scene, ortho_scale=2.2)
     check(scene, render)
+
+
+@pytest.mark.parametrize("height", [0.9, 1.2])
+def test_quads_that_are_folded(scene, render, height):
+    """By more than a right angle from a height of 1 on: which corners are then joined is not the same in each Blender."""
+    add_sun(scene)
+    add_roofs(scene, height).rotation_euler.x = 0.4
+    scene_parts.add_camera(scene, ortho_scale=2.2)
+    check(scene, render, 0.1)
 
 
 @pytest.mark.parametrize("faces", [8, 24])

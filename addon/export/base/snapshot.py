@@ -42,6 +42,7 @@ class Geometry:
     face_sizes: Optional[np.ndarray] = None  # int32 [F], corners a face, at least 3
     corner_verts: Optional[np.ndarray] = None  # int32 [C]
     ngon_triangles: Optional[np.ndarray] = None  # int32 [T, 3], corners within faces of more than 4
+    quads_by_normal: bool = False  # cut as by Blender before 4.1
     material_index: Optional[np.ndarray] = None  # int32 [F]; None = all 0
     smooth: Optional[np.ndarray] = None  # uint8 [F]; None = all flat
     corner_normals: Optional[np.ndarray] = None  # float32 [C, 3], unit, at the frame's time

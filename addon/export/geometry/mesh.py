@@ -124,6 +124,7 @@ def read_geometry(mesh, label, requested, report, check_cancel, subdivision=None
     poll(check_cancel)
     if subdivision is None:
         geometry.ngon_triangles = _ngon_triangles(mesh, topology)
+        geometry.quads_by_normal = _are_quads_cut_by_normal()
         geometry.smooth, geometry.corner_normals = _shading(mesh)
         if geometry.corner_normals is not None and not np.isfinite(geometry.corner_normals).all():
             report(label, "its normals are not finite: computed from the faces instead")
@@ -144,6 +145,14 @@ def _bytes_of(mesh):
 
 def _edges(mesh):
     return unsigned(mesh.edges, "vertices", 2).reshape(-1, 2)
+
+
+def _are_quads_cut_by_normal():
+    """What Blender 3.4's Cycles draws; 4.2's, 4.5's and 5.0's do not.  Until 4.0 evaluated meshes had normals before
+    they were cut."""
+    import bpy
+
+    return bpy.app.version < (4, 1)
 
 
 def _ngon_triangles(mesh, topology):

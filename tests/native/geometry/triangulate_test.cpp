@@ -61,7 +61,7 @@ TEST(Triangulate, what_crosses_itself_or_has_no_area_becomes_a_fan) {
 
 TEST(Triangulate, quads_are_cut_from_their_first_corner_unless_that_turns_a_triangle_over) {
     const auto cut = [](std::vector<Vec3f> quad) {
-        return triangulate_quad(std::span<const Vec3f, 4>(quad));
+        return triangulate_quad(std::span<const Vec3f, 4>(quad), false);
     };
     const QuadTriangles bent = cut({{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0}});
     EXPECT_EQ(bent.start, 0);
@@ -75,6 +75,24 @@ TEST(Triangulate, quads_are_cut_from_their_first_corner_unless_that_turns_a_tria
     // A bow tie has no good cut; a corner on an edge leaves one triangle.
     EXPECT_LT(cut({{0, 0, 0}, {4, 0, 0}, {1, 2, 0}, {3, 3, 0}}).cosine, 0.0);
     EXPECT_EQ(cut({{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {0, 4, 0}}).cosine, 1.0);
+}
+
+TEST(Triangulate, steep_roofs_keep_their_ridge_where_the_normal_decides) {
+    const auto start = [](std::vector<Vec3f> quad, bool by_normal) {
+        return triangulate_quad(std::span<const Vec3f, 4>(quad), by_normal).start;
+    };
+    // The ridge goes from the first corner to the third; its sides fall by 45 degrees at a height
+    // of 1.
+    const auto roof = [](float height) {
+        return std::vector<Vec3f>{{0, -1, height}, {1, 0, 0}, {0, 1, height}, {-1, 0, 0}};
+    };
+    EXPECT_EQ(start(roof(0.9f), false), 0);
+    EXPECT_EQ(start(roof(1.1f), false), 1);
+    EXPECT_EQ(start(roof(0.9f), true), 0);
+    EXPECT_EQ(start(roof(1.1f), true), 0);
+    // A corner inside of the other three, and one on their edge.
+    EXPECT_EQ(start({{0, 4, 0}, {0, 0, 0}, {4, 0, 0}, {1, 1, 0}}, true), 1);
+    EXPECT_EQ(start({{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {0, 4, 0}}, true), 1);
 }
 
 }  // namespace
