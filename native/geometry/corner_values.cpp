@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "math/srgb.h"
+
 namespace granita {
 namespace {
 
@@ -118,6 +120,7 @@ CornerValues corner_values(const SharedGeometry& geometry, const BasePatch& patc
         return value_at(geometry, request, attribute, patch.face, corner);
     };
     CornerValues values;
+    values.encoded = attribute && attribute->encoded;
     if (patch.kind != PatchKind::SubFace) {
         for (std::size_t i = 0; i < 4; ++i) values.at[i] = value(patch.corner[i]);
         return values;
@@ -161,6 +164,12 @@ void interpolate(const CornerValues& corners, PatchKind kind, std::span<const Ve
                 value += weights.w[k] * at;
                 by_u += weights.du[k] * at;
                 by_v += weights.dv[k] * at;
+            }
+            if (corners.encoded && c < 3) {
+                const double slope = linear_from_srgb_slope(value);
+                value = linear_from_srgb(static_cast<float>(value));
+                by_u *= slope;
+                by_v *= slope;
             }
             values[i * w + c] = static_cast<float>(value);
             du[i * w + c] = static_cast<float>(by_u);

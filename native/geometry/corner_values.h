@@ -27,6 +27,7 @@ Vec3d blend(const Corners& at, const std::array<double, 4>& w) {
 /// [4][width] at the corners (0,0), (1,0), (1,1), (0,1); a triangle's are (0,0), (1,0), (0,1).
 struct CornerValues {
     std::array<std::array<double, 4>, 4> at{};
+    bool encoded = false;  ///< as Attribute's
 };
 
 /// The attribute that a request names; nullptr: there is none, or it is no attribute.
@@ -42,7 +43,7 @@ bool in_box(const GeometryData& data, AttributeSource source);
 /// The box of the points at the frame time mapped to [0, 1]^3.
 Vec3d generated(const Bounds3f& box, const Vec3d& p_object);
 
-/// Fills values, du, dv [n][width] by u and v.
+/// Fills values, du, dv [n][width] by u and v; colours are decoded.
 void interpolate(const CornerValues& corners, PatchKind kind, std::span<const Vec2d> uv, int width,
                  std::vector<float>& values, std::vector<float>& du, std::vector<float>& dv);
 

@@ -36,6 +36,7 @@ Attribute read_attribute(const Record& r, const GeometryData& g) {
     if (attribute.width < 1 || attribute.width > 4)
         r.fail("attribute '" + attribute.name + "' has " + std::to_string(attribute.width) +
                " components, expected 1 to 4");
+    attribute.encoded = r.boolean("encoded", false);
     attribute.values.assign(a.data(), a.data() + a.size());
     return attribute;
 }

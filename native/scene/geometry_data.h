@@ -19,6 +19,7 @@ struct Attribute {
     AttributeKind kind = AttributeKind::Generic;
     int width = 1;              ///< floats an element, 1 to 4
     std::vector<float> values;  ///< [elements of the domain][width]
+    bool encoded = false;       ///< colours as sRGB's numbers, which is what lies between them too
 };
 
 enum class SubdivisionScheme { CatmullClark, Simple };

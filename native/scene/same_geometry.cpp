@@ -17,7 +17,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 
 bool is_same(const Attribute& a, const Attribute& b) {
     return a.name == b.name && a.domain == b.domain && a.kind == b.kind && a.width == b.width &&
-           same_bytes(a.values, b.values);
+           a.encoded == b.encoded && same_bytes(a.values, b.values);
 }
 
 bool is_same(const Subdivision& a, const Subdivision& b) {

@@ -4,6 +4,7 @@
 import bpy
 import numpy as np
 import pytest
+import scene_parts
 from mathutils import Matrix
 from node_comparison import LIMIT, Tree, board, check, enum_values, render_both, rmse
 
@@ -218,6 +219,29 @@ def test_color_attribute(scene, render):
     tree.link(tree.add("ShaderNodeVertexColor", layer_name="Float").outputs["Alpha"], mix.inputs[0])
     tree.emit(mix.outputs[0])
     check(scene, render)
+
+
+@pytest.mark.parametrize("domain", ["POINT", "CORNER"])
+@pytest.mark.parametrize("kind", ["BYTE_COLOR", "FLOAT_COLOR"])
+def test_colors_of_a_cage(scene, render, kind, domain):
+    """The Subdivision modifier blends bytes as they are stored: half way from black to white is .21.  It stores bytes
+    again, the third of a step away (.0029 of the brightest)."""
+    x, y = np.meshgrid(np.linspace(-1, 1, 5), np.linspace(-1, 1, 5))
+    vertices = np.stack([x, y, np.zeros_like(x)], axis=-1).reshape(-1, 3)
+    first = (np.arange(4)[:, None] * 5 + np.arange(4)).ravel()
+    thing = scene_parts.add_mesh(
+        scene, "Cage", vertices.tolist(), (first[:, None] + np.array([0, 1, 6, 5])).tolist()
+    )
+    thing.data.polygons.foreach_set("use_smooth", [True] * len(first))  # else Blender subdivides it
+    modifier = thing.modifiers.new("Subdivision", "SUBSURF")
+    modifier.boundary_smooth, modifier.render_levels = "PRESERVE_CORNERS", 5
+    colors = thing.data.color_attributes.new("Colors", kind, domain)
+    values = np.random.default_rng(3).integers(0, 2, (len(colors.data), 4))
+    colors.data.foreach_set("color", values.astype(np.float32).ravel())
+    scene_parts.add_camera(scene, ortho_scale=2.0)
+    tree = Tree(thing)
+    tree.emit(tree.add("ShaderNodeVertexColor", layer_name="Colors").outputs["Color"])
+    check(scene, render, samples=16, limit=0.004)
 
 
 @pytest.mark.parametrize("output", ["View Vector", "View Z Depth", "View Distance"])

@@ -106,6 +106,20 @@ def test_quads_that_are_folded(scene, render, height):
     check(scene, render, 0.1)
 
 
+def test_creases_of_metaballs(scene, render):
+    """3.4 shades them by the field's normals, which at a crease are those of one of its sides."""
+    balls = bpy.data.metaballs.new("Balls")
+    balls.render_resolution = 0.2
+    for place, radius, hollow in (((0, 0, 0), 1.2, False), ((0.3, -0.2, 0.7), 0.9, True)):
+        ball = balls.elements.new()
+        ball.co, ball.radius, ball.use_negative = place, radius, hollow
+    balls.materials.append(bpy.data.materials.new("Diffuse"))
+    scene_parts.add_object(scene, "Balls", balls)
+    add_sun(scene)
+    scene_parts.add_camera(scene, ortho_scale=2.2)
+    check(scene, render)
+
+
 @pytest.mark.parametrize("faces", [8, 24])
 def test_smooth_waves(scene, render, faces):
     add_sun(scene)

@@ -96,6 +96,8 @@ def normalize_normals(tree):
 def render(scene, path):
     """Renders to linear 32-bit OpenEXR without compression; returns the seconds of the whole frame."""
     image = scene.render.image_settings
+    if bpy.app.version >= (5, 0):
+        image.media_type = "IMAGE"
     image.file_format, image.color_depth, image.exr_codec = "OPEN_EXR", "32", "NONE"
     scene.view_settings.view_transform = "Standard"
     scene.render.use_file_extension = False

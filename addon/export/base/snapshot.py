@@ -24,6 +24,7 @@ class Attribute:
     domain: str  # "POINT", "FACE", "CORNER"
     kind: str  # "GENERIC", "UV", "COLOR"
     values: np.ndarray
+    encoded: bool = False  # colours are sRGB's numbers, between elements too
 
 
 @dataclass

@@ -100,7 +100,7 @@ def asks_on_edges(mesh, materials):
     )
 
 
-def mesh_attributes(mesh, label, requested, report):
+def mesh_attributes(mesh, label, requested, report, is_cage=False):
     """Every UV map and colour attribute, and the generic attributes asked for.
 
     Args:
@@ -108,11 +108,12 @@ def mesh_attributes(mesh, label, requested, report):
         label: the mesh's name for messages.
         requested: names of generic attributes.
         report: called with (datablock, message).
+        is_cage: the mesh is to be subdivided.
 
     Returns:
         list of Attribute, the UV map and the colour that are active for render first among theirs.
     """
-    found = _uv_maps(mesh) + _colors(mesh)
+    found = _uv_maps(mesh) + _colors(mesh, is_cage)
     taken = {attribute.name for attribute in found}
     for attribute, domain, values in shadable(mesh, requested - taken, _DOMAINS, label, report):
         found.append(Attribute(attribute.name, domain, "GENERIC", values))
@@ -188,14 +189,20 @@ def _uv_maps(mesh):
     return maps
 
 
-def _colors(mesh):
+def _colors(mesh, is_cage):
     layers = list(mesh.color_attributes)
     active = mesh.color_attributes.render_color_index
     if 0 <= active < len(layers):
         layers.insert(0, layers.pop(active))
-    return [
-        Attribute(layer.name, layer.domain, "COLOR", attribute_values(layer)) for layer in layers
-    ]
+    return [_color(layer, is_cage and layer.data_type == "BYTE_COLOR") for layer in layers]
+
+
+def _color(layer, encoded):
+    """Of a cage the Subdivision modifier blends bytes as they are stored."""
+    if not encoded:
+        return Attribute(layer.name, layer.domain, "COLOR", attribute_values(layer))
+    values = vectors(layer.data, "color_srgb", 4)
+    return Attribute(layer.name, layer.domain, "COLOR", values, encoded=True)
 
 
 def attribute_values(attribute):
@@ -208,8 +215,8 @@ def attribute_values(attribute):
     return values.reshape(-1, width).astype(np.float32, copy=False)
 
 
-def vectors(collection, member="vector"):
-    """float32 [n, 3]."""
-    values = np.empty((len(collection), 3), dtype=np.float32)
+def vectors(collection, member="vector", width=3):
+    """float32 [n, width]."""
+    values = np.empty((len(collection), width), dtype=np.float32)
     collection.foreach_get(member, values.reshape(-1))
     return values

@@ -112,7 +112,8 @@ def read_geometry(mesh, label, requested, report, check_cancel, subdivision=None
         subdivision=subdivision,
     )
     poll(check_cancel)
-    geometry.attributes = mesh_attributes(mesh, label, requested, report)
+    is_cage = subdivision is not None
+    geometry.attributes = mesh_attributes(mesh, label, requested, report, is_cage)
     if ISLANDS in requested:
         geometry.edges = _edges(mesh)
     if POINTINESS in requested:
@@ -231,6 +232,13 @@ def _shading(mesh):
     normals = vectors(mesh.loops, "normal")
     mesh.free_normals_split()
     return smooth, normals
+
+
+def normals_of_field(mesh, corner_verts):
+    """float32 [C, 3] of a metaball, or None where they are no numbers: in 3.4 its vertices have those of its field,
+    not of its faces, which differ at creases."""
+    normals = vectors(mesh.vertices, "normal")
+    return normals[corner_verts] if np.isfinite(normals).all() else None
 
 
 def _drop_broken_faces(geometry, report):

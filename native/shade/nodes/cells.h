@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include "math/hash.h"
@@ -42,8 +43,10 @@ CellPoint<N> point_in_cell(const CellPoint<N>& k, bool pcg) {
                 hash_floats(k[2], k[3], k[0], k[1]), hash_floats(k[1], k[2], k[3], k[0])};
 }
 
+/// `point`: point_in_cell() of it.
 template <std::size_t N>
-Vec3f color_of_cell(const CellPoint<N>& k, bool pcg) {
+Vec3f color_of_cell(const CellPoint<N>& k, const CellPoint<N>& point, bool pcg) {
+    if constexpr (N == 3) return {point[0], point[1], point[2]};  // made of the same hashes
     if (N == 1 || !pcg) return hash_color(k);
     std::array<std::int32_t, (N < 4 ? 3 : 4)> cell{};
     std::ranges::copy(indices<N>(k), cell.begin());
@@ -53,42 +56,62 @@ Vec3f color_of_cell(const CellPoint<N>& k, bool pcg) {
 
 enum class Metric { Euclidean, Manhattan, Chebychev, Minkowski };
 
-template <std::size_t N>
-float length_of(const CellPoint<N>& d, Metric metric, float exponent) {
+template <Metric kMetric, std::size_t N>
+float length_of(const CellPoint<N>& d, float exponent = 2.0f) {
     float sum = 0.0f;
     for (const float x : d) {
         const float a = std::abs(x);
-        if (N == 1 || metric == Metric::Manhattan)
+        if constexpr (N == 1 || kMetric == Metric::Manhattan)
             sum += a;
-        else if (metric == Metric::Chebychev)
+        else if constexpr (kMetric == Metric::Chebychev)
             sum = std::max(sum, a);
-        else if (metric == Metric::Minkowski)
+        else if constexpr (kMetric == Metric::Minkowski)
             sum += std::pow(a, exponent);
         else
             sum += a * a;
     }
-    if (N == 1) return sum;
-    if (metric == Metric::Minkowski) return std::pow(sum, 1.0f / exponent);
-    return metric == Metric::Euclidean ? std::sqrt(sum) : sum;
+    if constexpr (N == 1) return sum;
+    if constexpr (kMetric == Metric::Minkowski) return std::pow(sum, 1.0f / exponent);
+    return kMetric == Metric::Euclidean ? std::sqrt(sum) : sum;
 }
 
 /// At most length_of(), for less: of lengths by powers those of higher powers are shorter.  Powers
 /// above 2 are 0 in floats where lengths are not.
-template <std::size_t N>
-float least_length_of(const CellPoint<N>& d, Metric metric, float exponent) {
-    if (metric != Metric::Minkowski) return length_of<N>(d, metric, exponent);
+template <Metric kMetric, std::size_t N>
+float least_length_of(const CellPoint<N>& d, float exponent) {
+    if constexpr (kMetric != Metric::Minkowski) return length_of<kMetric>(d);
     constexpr float kRounding = 1.0f - 1e-5f;  // of powers
     if (!(exponent > 0.0f && exponent <= 2.0f)) return 0.0f;
-    const Metric shorter = exponent <= 1.0f ? Metric::Manhattan : Metric::Euclidean;
-    return kRounding * length_of<N>(d, shorter, exponent);
+    return kRounding *
+           (exponent <= 1.0f ? length_of<Metric::Manhattan>(d) : length_of<Metric::Euclidean>(d));
 }
+
+/// call(std::integral_constant) of a metric: what runs for each cell is compiled for one.
+template <class Call>
+auto with_metric(Metric metric, const Call& call) {
+    using enum Metric;
+    switch (metric) {
+        case Manhattan:
+            return call(std::integral_constant<Metric, Manhattan>());
+        case Chebychev:
+            return call(std::integral_constant<Metric, Chebychev>());
+        case Minkowski:
+            return call(std::integral_constant<Metric, Minkowski>());
+        case Euclidean:
+            break;
+    }
+    return call(std::integral_constant<Metric, Euclidean>());
+}
+
+constexpr int kMostReach = 2;
 
 /// A cell near another, as seen from there.
 template <std::size_t N>
 struct CellBeside {
     CellPoint<N> offset{};
-    int index = 0;  ///< in an order that has the first axis fastest
-    int sides = 0;  ///< axes along which it is away
+    std::array<std::uint8_t, N> column{};  ///< that, from -kMostReach on
+    int index = 0;                         ///< in an order that has the first axis fastest
+    int sides = 0;                         ///< axes along which it is away
 };
 
 /// Those up to `Reach` away, in that order.
@@ -101,7 +124,9 @@ constexpr auto cells_beside() {
     for (std::size_t i = 0; i < kCells; ++i) {
         cells[i].index = static_cast<int>(i);
         for (std::size_t c = 0, rest = i; c < N; ++c, rest /= kSide) {
-            cells[i].offset[c] = static_cast<float>(static_cast<int>(rest % kSide) - Reach);
+            const int offset = static_cast<int>(rest % kSide) - Reach;
+            cells[i].offset[c] = static_cast<float>(offset);
+            cells[i].column[c] = static_cast<std::uint8_t>(offset + kMostReach);
             cells[i].sides += cells[i].offset[c] != 0.0f;
         }
     }
@@ -140,6 +165,11 @@ class CellsAround {
         for (std::size_t c = 0; c < N; ++c) {
             m_base[c] = std::floor(place[c]);
             m_inside[c] = place[c] - m_base[c];
+            for (std::size_t k = 0; k < kColumns; ++k) {
+                const float offset = static_cast<float>(k) - static_cast<float>(kMostReach);
+                m_least[c][k] =
+                    std::max({offset - m_inside[c], m_inside[c] - (offset + m_randomness), 0.0f});
+            }
         }
     }
     const CellPoint<N>& base() const { return m_base; }
@@ -149,32 +179,40 @@ class CellsAround {
         for (std::size_t c = 0; c < N; ++c) cell[c] = m_base[c] + offset[c];
         return cell;
     }
-    CellPoint<N> point(const CellPoint<N>& offset) const {
-        CellPoint<N> point = point_in_cell<N>(cell(offset), m_pcg);
-        for (std::size_t c = 0; c < N; ++c) point[c] = offset[c] + point[c] * m_randomness;
-        return point;
+    /// Within its cell.
+    CellPoint<N> unit(const CellPoint<N>& offset) const {
+        return point_in_cell<N>(cell(offset), m_pcg);
     }
-    Vec3f color(const CellPoint<N>& offset) const { return color_of_cell<N>(cell(offset), m_pcg); }
+    CellPoint<N> point(const CellPoint<N>& offset) const { return placed(offset, unit(offset)); }
+    Vec3f color(const CellPoint<N>& offset, const CellPoint<N>& unit) const {
+        return color_of_cell<N>(cell(offset), unit, m_pcg);
+    }
 
-    /// `visit(cell, point)` of those `beside` (CellBeside) that may hold a point that is near:
-    /// `is_near(way)`, with the least way to any of them along each axis.
+    /// `visit(cell, point, unit)` of those `beside` (CellBeside) that may hold a point that is
+    /// near: `is_near(way)`, with the least way to any of them along each axis.
     template <class IsNear, class Visit>
     void each(const auto& beside, const IsNear& is_near, const Visit& visit) const {
-        for (const CellBeside<N>& cell : beside)
-            if (is_near(least_way(cell.offset))) visit(cell, point(cell.offset));
+        for (const CellBeside<N>& cell : beside) {
+            CellPoint<N> way;
+            for (std::size_t c = 0; c < N; ++c) way[c] = m_least[c][cell.column[c]];
+            if (!is_near(way)) continue;
+            const CellPoint<N> within = unit(cell.offset);
+            visit(cell, placed(cell.offset, within), within);
+        }
     }
 
   private:
-    /// To the points that a cell may have, along each axis.
-    CellPoint<N> least_way(const CellPoint<N>& offset) const {
-        CellPoint<N> way;
-        for (std::size_t c = 0; c < N; ++c)
-            way[c] =
-                std::max({offset[c] - m_inside[c], m_inside[c] - (offset[c] + m_randomness), 0.0f});
-        return way;
+    static constexpr std::size_t kColumns = 2 * kMostReach + 1;
+
+    CellPoint<N> placed(const CellPoint<N>& offset, const CellPoint<N>& unit) const {
+        CellPoint<N> point;
+        for (std::size_t c = 0; c < N; ++c) point[c] = offset[c] + unit[c] * m_randomness;
+        return point;
     }
 
     CellPoint<N> m_base, m_inside;
+    /// Along each axis, from the place to the points that cells of a column may have.
+    std::array<std::array<float, kColumns>, N> m_least;
     float m_randomness;
     bool m_pcg;
 };

@@ -84,7 +84,7 @@ class Voronoi {
     /// Half of the way from the nearest point to its own nearest.
     float sphere_radius(const CellPoint<N>& place) const {
         const CellsAround<N> cells = around(place);
-        const Near nearest = nearest_of(cells, Metric::Euclidean, 1).first;
+        const Near nearest = nearest_of<Metric::Euclidean>(cells, 1).first;
         float least = kFar;
         for (const CellBeside<N>& cell : kBeside) {
             if (cell.sides == 0) continue;
@@ -103,7 +103,7 @@ class Voronoi {
     struct Near {
         float distance = kFar;
         int index = 0;  ///< of two that are as near the first counts
-        CellPoint<N> offset{}, point{};
+        CellPoint<N> offset{}, point{}, unit{};
 
         bool operator<(const Near& other) const {
             return std::tie(distance, index) < std::tie(other.distance, other.index);
@@ -128,28 +128,34 @@ class Voronoi {
     float farthest() const {
         CellPoint<N> corner;
         corner.fill(0.5f + 0.5f * m_in.randomness);
-        const float most = length_of<N>(corner, m_settings.metric, m_in.exponent);
+        const float most = with_metric(m_settings.metric, [&](auto metric) {
+            return length_of<metric()>(corner, m_in.exponent);
+        });
         return m_settings.feature == VoronoiFeature::F2 ? 2.0f * most : most;
     }
     VoronoiValue<N> octave(const CellPoint<N>& place) const {
-        return m_settings.feature == VoronoiFeature::SmoothF1 ? smooth_octave(place)
-                                                              : nearest_octave(place);
+        const CellsAround<N> cells = around(place);
+        return with_metric(m_settings.metric, [&](auto metric) {
+            return m_settings.feature == VoronoiFeature::SmoothF1 ? smooth_octave<metric()>(cells)
+                                                                  : nearest_octave<metric()>(cells);
+        });
     }
 
     /// The nearest two points, the second one only if `count` says so.  Most cells are farther away
     /// than what was found before (in 3D a place asks 8 of 27).
-    std::pair<Near, Near> nearest_of(const CellsAround<N>& cells, Metric metric, int count) const {
+    template <Metric kMetric>
+    std::pair<Near, Near> nearest_of(const CellsAround<N>& cells, int count) const {
         Near first, second;
         const Near& last = count > 1 ? second : first;
         cells.each(
             kOutwards,
             [&](const CellPoint<N>& way) {
-                return !(least_length_of<N>(way, metric, m_in.exponent) > last.distance);
+                return !(least_length_of<kMetric>(way, m_in.exponent) > last.distance);
             },
-            [&](const CellBeside<N>& cell, const CellPoint<N>& point) {
+            [&](const CellBeside<N>& cell, const CellPoint<N>& point, const CellPoint<N>& unit) {
                 const CellPoint<N> way = difference(point, cells.inside());
-                const Near here{length_of<N>(way, metric, m_in.exponent), cell.index, cell.offset,
-                                point};
+                const Near here{length_of<kMetric>(way, m_in.exponent), cell.index, cell.offset,
+                                point, unit};
                 if (here < first) {
                     second = first;
                     first = here;
@@ -160,30 +166,30 @@ class Voronoi {
         return {first, second};
     }
 
-    VoronoiValue<N> nearest_octave(const CellPoint<N>& place) const {
-        const CellsAround<N> cells = around(place);
+    template <Metric kMetric>
+    VoronoiValue<N> nearest_octave(const CellsAround<N>& cells) const {
         const bool is_second = m_settings.feature == VoronoiFeature::F2;
-        const auto [first, second] = nearest_of(cells, m_settings.metric, is_second ? 2 : 1);
+        const auto [first, second] = nearest_of<kMetric>(cells, is_second ? 2 : 1);
         const Near& found = is_second ? second : first;
         VoronoiValue<N> value{found.distance, {}, found.point};
-        if (m_colored) value.color = cells.color(found.offset);
+        if (m_colored) value.color = cells.color(found.offset, found.unit);
         for (std::size_t c = 0; c < N; ++c) value.position[c] += cells.base()[c];
         return value;
     }
 
     /// A minimum without corners, over points one after the other.
-    VoronoiValue<N> smooth_octave(const CellPoint<N>& place) const {
-        const CellsAround<N> cells = around(place);
+    template <Metric kMetric>
+    VoronoiValue<N> smooth_octave(const CellsAround<N>& cells) const {
         VoronoiValue<N> value;
         value.distance = 8.0f;
         // What is no nearer than that by all of the smoothness changes nothing.
         const auto is_near = [&](const CellPoint<N>& way) {
-            return !(least_length_of<N>(way, m_settings.metric, m_in.exponent) >
+            return !(least_length_of<kMetric>(way, m_in.exponent) >
                      value.distance + m_in.smoothness);
         };
-        cells.each(kAround, is_near, [&](const CellBeside<N>& cell, const CellPoint<N>& point) {
-            const float here =
-                length_of<N>(difference(point, cells.inside()), m_settings.metric, m_in.exponent);
+        const auto visit = [&](const CellBeside<N>& cell, const CellPoint<N>& point,
+                               const CellPoint<N>& unit) {
+            const float here = length_of<kMetric>(difference(point, cells.inside()), m_in.exponent);
             const float t =
                 std::clamp(0.5f + 0.5f * (value.distance - here) / m_in.smoothness, 0.0f, 1.0f);
             const float h = t * t * (3.0f - 2.0f * t);
@@ -191,10 +197,11 @@ class Voronoi {
             value.distance += h * (here - value.distance) - less;
             less /= 1.0f + 3.0f * m_in.smoothness;
             if (m_colored && h > 0.0f)
-                value.color += h * (cells.color(cell.offset) - value.color) - less;
+                value.color += h * (cells.color(cell.offset, unit) - value.color) - less;
             for (std::size_t c = 0; c < N; ++c)
                 value.position[c] += h * (point[c] - value.position[c]) - less;
-        });
+        };
+        cells.each(kAround, is_near, visit);
         for (std::size_t c = 0; c < N; ++c) value.position[c] += cells.base()[c];
         return value;
     }
@@ -206,15 +213,14 @@ class Voronoi {
             return std::min(std::abs(0.5f * (middle + cells.point({-1.0f})[0]) - at),
                             std::abs(0.5f * (middle + cells.point({1.0f})[0]) - at));
         }
-        const Near first = nearest_of(cells, Metric::Euclidean, 1).first;
+        const Near first = nearest_of<Metric::Euclidean>(cells, 1).first;
         const CellPoint<N> nearest = difference(first.point, cells.inside());
         float least = 8.0f;
         // No border is nearer than half of what its point is farther away.
         const auto is_near = [&](const CellPoint<N>& way) {
-            return length_of<N>(way, Metric::Euclidean, 2.0f) <
-                   first.distance + 2.0f * least + 1e-5f;
+            return length_of<Metric::Euclidean>(way) < first.distance + 2.0f * least + 1e-5f;
         };
-        cells.each(kOutwards, is_near, [&](const CellBeside<N>&, const CellPoint<N>& point) {
+        cells.each(kOutwards, is_near, [&](const auto&, const CellPoint<N>& point, const auto&) {
             const CellPoint<N> way = difference(point, cells.inside());
             const CellPoint<N> across = difference(way, nearest);
             const float length = dot(across, across);
