@@ -31,8 +31,7 @@ float stretch_of(const OpenedMesh& mesh, const Vec3f& p, const Vec3d& su, const 
 
 /// The shading state at three corners of each.
 struct CornerState {
-    std::vector<Vec3f> normal, geometric_normal, dp_du, dp_dv, ray_offset;
-    std::vector<Vec4f> rise;
+    std::vector<Vec3f> normal, geometric_normal, dp_du, dp_dv, ray_offset, rise;
     std::vector<CornerBlend> normal_corners;
 };
 

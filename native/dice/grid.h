@@ -123,9 +123,8 @@ struct Grid {
     /// outside of it, those of hairs as LitPlace::start_around() says.  Empty: at p.
     std::vector<Vec3f> ray_offset;
     /// [points] from p to the smooth surface that normals of a mesh tell of, on the side that is
-    /// seen, and how far the nearest side of its triangle is (geometry/smooth_rise.h).  Empty: the
-    /// surface has no normals but its own.
-    std::vector<Vec4f> rise;
+    /// seen (geometry/smooth_rise.h).  Empty: the surface has no normals but its own.
+    std::vector<Vec3f> rise;
     /// Cosine to its faces below which rays to lamps start there.
     float terminator_offset = 0.0f;
     /// Part of a square pixel that a point stands for, at most 1: how much light it is worth.

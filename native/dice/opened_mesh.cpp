@@ -185,9 +185,9 @@ void OpenedMesh::displace(const BasePatch& patch, PatchKind kind, const Attribut
     displace(request, offsets, 0, values, du, dv);
 }
 
-Vec4f OpenedMesh::rise(const FrameFace& face, const CornerWeights& weights,
+Vec3f OpenedMesh::rise(const FrameFace& face, const CornerWeights& weights,
                        const Vec3d& flat) const {
-    if (!face.is_smooth) return Vec4f(0.0f);
+    if (!face.is_smooth) return Vec3f(0.0f);
     const Vec3d from_eye =
         view().projection.perspective ? blend(face.p, weights.w) : Vec3d(0.0, 0.0, 1.0);
     return smooth_rise(face.p, face.normal, weights, glm::dot(flat, from_eye) < 0.0);

@@ -26,7 +26,7 @@ struct SurfaceSamples {
     std::vector<Vec3f> su, sv;            ///< [n] at the frame time
     std::vector<Vec3f> normal;            ///< [n] unit, shading, at the frame time
     std::vector<Vec3f> geometric_normal;  ///< [n] unit, at the frame time
-    std::vector<Vec4f> rise;              ///< [n] as Grid::rise; empty unless OpenedMesh::rises()
+    std::vector<Vec3f> rise;              ///< [n] as Grid::rise; empty unless OpenedMesh::rises()
 };
 
 class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<OpenedMesh> {
@@ -126,7 +126,7 @@ class OpenedMesh : public OpenedInstance, public std::enable_shared_from_this<Op
                (!data().corner_normals.empty() || !m_shared->vertex_normals().empty());
     }
     /// Grid::rise where the face itself has the normal `flat`.
-    Vec4f rise(const FrameFace& face, const CornerWeights& weights, const Vec3d& flat) const;
+    Vec3f rise(const FrameFace& face, const CornerWeights& weights, const Vec3d& flat) const;
     /// Grid::knot_normals
     std::shared_ptr<const KnotNormals> knot_normals() const;
     /// Grid::normal_corners at a place of a polygon's patch.

@@ -8,11 +8,10 @@
 
 namespace granita {
 
-/// From a place on a smooth face with these corners, at which its normals are unit; last how far
-/// the nearest side of its triangle is.
+/// From a place on a smooth face with these corners, at which its normals are unit.
 /// @param above whether the surface is seen from where its normals point to; else the way to the
 ///     surface as it is from inside.
-Vec4f smooth_rise(const Vec3d (&p)[4], const Vec3d (&normals)[4], const CornerWeights& weights,
+Vec3f smooth_rise(const Vec3d (&p)[4], const Vec3d (&normals)[4], const CornerWeights& weights,
                   bool above);
 
 }  // namespace granita

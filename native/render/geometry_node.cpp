@@ -14,7 +14,7 @@ void drop_shading_state(Grid& grid) {
     for (std::vector<Vec3f>* values : {&grid.p, &grid.normal, &grid.geometric_normal, &grid.dp_du,
                                        &grid.dp_dv, &grid.ray_offset})
         std::vector<Vec3f>().swap(*values);
-    std::vector<Vec4f>().swap(grid.rise);
+    std::vector<Vec3f>().swap(grid.rise);
     std::vector<CornerBlend>().swap(grid.normal_corners);
     grid.knot_normals.reset();
     std::vector<GridAttribute>().swap(grid.attributes);

@@ -205,8 +205,8 @@ RefinedPoints::RefinedPoints(const Grid& grid, const Scene& scene, const Shading
         if (!grid.ray_offset.empty()) offset += turn * mean(grid.ray_offset);
         points.ray_offset.push_back(offset);
         if (!grid.rise.empty()) {
-            const Vec4f rise = blend.mean<Vec4f>([&](std::size_t k) { return grid.rise[k]; });
-            points.rise.emplace_back(turn * rotation * Vec3f(rise), rise.w);
+            const Vec3f rise = blend.mean<Vec3f>([&](std::size_t k) { return grid.rise[k]; });
+            points.rise.push_back(turn * rotation * rise);
         }
         if (!faces.empty()) points.faces.push_back(faces[blend.point[0]]);
         if (timed) points.times.push_back(at.time);

@@ -39,7 +39,7 @@ ShadingPoints shading_points(const Grid& grid, const ShadingCamera& camera) {
         points.backfacing[i] = side < 0.0f;
     }
     points.terminator_offset = grid.terminator_offset;
-    for (const Vec4f& rise : grid.rise) points.rise.emplace_back(rotation * Vec3f(rise), rise.w);
+    for (const Vec3f& rise : grid.rise) points.rise.push_back(rotation * rise);
     for (const Vec3f& offset : grid.ray_offset) points.ray_offset.push_back(rotation * offset);
     return points;
 }
@@ -59,7 +59,7 @@ void show_other_side(ShadingPoints& points, std::span<const std::size_t> which) 
         points.view[i] -= 2.0f * glm::dot(points.view[i], outward) * outward;
         points.backfacing[i] ^= 1;
         // That of the smooth surface is known of the side alone that is seen at the frame time.
-        if (!points.rise.empty()) points.rise[i] = Vec4f(0.0f, 0.0f, 0.0f, points.rise[i].w);
+        if (!points.rise.empty()) points.rise[i] = Vec3f(0.0f);
     }
 }
 

@@ -100,3 +100,26 @@ def test_light_that_leaves_shows_no_faces(scene, render):
     cube(scene, "ShaderNodeSubsurfaceScattering", Scale=scale, Radius=(0.2, 0.2, 0.2))
     look_at_stage(scene, 3.0, 0.8)
     check(scene, render, limit=4, worst=0.06, mean=0.015)
+
+
+@pytest.mark.parametrize("behind", [0.002, 0.05, 0.2])
+def test_bumps_let_no_light_through(scene, render, behind):
+    """A smooth wall whose displacement is a bump, before a sun that its normals see and it does not: the wall of a hangar
+    was lit from outside, a third of the sun's light where that grazed it."""
+    wall = scene_parts.add_square(scene, "Wall", 6.0)
+    wall.data.polygons[0].use_smooth = True
+    material, nodes, links, output = scene_parts.node_material()
+    wall.data.materials.append(material)
+    noise, bump = nodes.new("ShaderNodeTexNoise"), nodes.new("ShaderNodeDisplacement")
+    for source, target in (
+        (nodes.new("ShaderNodeBsdfDiffuse").outputs[0], output.inputs["Surface"]),
+        (noise.outputs[0], bump.inputs["Height"]),
+        (bump.outputs[0], output.inputs["Displacement"]),
+    ):
+        links.new(source, target)
+    sun = scene_parts.add_object(scene, "Sun", bpy.data.lights.new("Sun", "SUN"))
+    sun.data.energy, sun.data.angle = 10.0, 0.0
+    sun.rotation_euler = (0.0, math.pi / 2 + math.asin(behind), 0.0)
+    scene_parts.add_camera(scene, ortho_scale=2.0)
+    for passes in scene_parts.direct_light_of_both(scene, render, 16):
+        assert next(v for k, v in passes.items() if k.endswith("Combined.G")).max() < 1e-3

@@ -120,7 +120,7 @@ void HitPoints::fill(std::span<const MetPath> met, const std::vector<AttributeRe
     const bool displaced = m_rays.is_displaced({instance.key});
     m_points.terminator_offset = instance.terminator_offset;
     (m_camera.perspective ? m_points.pixel_slope : m_points.pixel_width) = m_camera.pixel;
-    if (!first.elements && !displaced) m_points.rise.assign(met.size(), Vec4f(0.0f));
+    if (!first.elements && !displaced) m_points.rise.assign(met.size(), Vec3f(0.0f));
     m_input = {};
     m_input.points = &m_points;
     m_input.attributes = &m_attributes.grid();

@@ -184,7 +184,7 @@ struct ShadingPoints {
     /// A pixel's width where they are seen, metres: this much, and this much a metre from the eye.
     float pixel_width = 0.0f, pixel_slope = 0.0f;
     std::vector<Vec3f> ray_offset;     ///< [n] as Grid::ray_offset; may be empty
-    std::vector<Vec4f> rise;           ///< [n] as Grid::rise; may be empty
+    std::vector<Vec3f> rise;           ///< [n] as Grid::rise; may be empty
     float terminator_offset = 0.0f;    ///< as Grid::terminator_offset
     std::vector<std::uint32_t> faces;  ///< [n] as ShadingPositions::faces; may be empty
     float share = 1.0f;                ///< as Grid::point_share

@@ -137,24 +137,20 @@ Ray LampSet::ray(const LitPoint& point, const LitPlace& place, const Vec3f& dire
     return {start, direction, distance, from.time, blocker_set, type};
 }
 
-/// Where it would end at the faces, though normals are turned to the lamp: a triangle does not
-/// shade itself, so that a ray through it starts behind it, and coarse ones not each other, above
-/// which it starts (Cycles).
+/// Where it would end at the faces, though normals are turned to the lamp: coarse triangles do not
+/// shade each other, above which it starts.  Without such an offset one does not shade itself: a
+/// ray through it starts behind it (Cycles).
 void LampSet::bend(const LitPoint& point, const LitPlace& place, Ray& ray) {
     if (!point.rise || ray.type != RayType::Shadow) return;
     const float smooth = glm::dot(point.bsdf.surface_normal(), ray.direction);
     const float flat = glm::dot(place.normal, ray.direction), offset = point.terminator_offset;
     if (smooth <= 0.0f || std::min(smooth, flat) >= offset) return;
-    const Vec3f whole(*point.rise);
-    if (flat < 0.0f) {
-        const float beside = glm::dot(whole, place.normal) * std::sqrt(1.0f - flat * flat);
-        if (offset == 0.0f || beside <= -flat * point.rise->w) {
-            ray.start = place.start_below();
-            return;
-        }
+    if (offset == 0.0f && flat < 0.0f) {
+        ray.start = place.start_below();
+        return;
     }
     const float rise = smooth < offset ? 2.0f - (flat + smooth) / offset : 1.0f - flat / offset;
-    ray.start += std::clamp(rise, 0.0f, 1.0f) * whole;
+    ray.start += std::clamp(rise, 0.0f, 1.0f) * *point.rise;
 }
 
 Ray LampSet::ray_to(const LitPoint& point, const LitPlace& place, const Lamp& lamp,

@@ -52,7 +52,7 @@ struct LitPoint {
     Vec2f exposed{0.0f, 1.0f};  ///< the part of the shutter's light that it is there for
     std::span<const float> visible_times;  ///< as ShadingPoints' own; empty: any time of those
     /// As ShadingPoints::rise; nullptr: normals are those of the surface.
-    const Vec4f* rise = nullptr;
+    const Vec3f* rise = nullptr;
     float terminator_offset = 0.0f;
     float width = 0.0f;  ///< of what it stands for, metres
     bool round = false;  ///< on a tube, as ShadingPoints::round
