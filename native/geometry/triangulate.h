@@ -27,9 +27,9 @@ struct QuadTriangles {
     int start = 0;        ///< 1 where a cut from corner 0 to 2 would turn one of them over
     double cosine = 1.0;  ///< between their normals; 1 where one has no area
 };
-/// `by_normal`: a triangle is turned over where it faces away from the quad's normal (until Blender
-/// 4.0, whose meshes knew their normals when they were cut), else where it faces away from the
-/// other one: of quads that are folded by more than a right angle they differ.
+/// `by_normal`: a triangle is turned over where it faces away from the quad's normal (as a rule
+/// until Blender 4.0, whose meshes had normals when they were cut), else where it faces away from
+/// the other one: of quads that are folded by more than a right angle they differ.
 QuadTriangles triangulate_quad(std::span<const Vec3f, 4> quad, bool by_normal);
 
 /// `polygon` has n >= 3 finite corners.

@@ -149,8 +149,8 @@ def _edges(mesh):
 
 
 def _are_quads_cut_by_normal():
-    """What Blender 3.4's Cycles draws; 4.2's, 4.5's and 5.0's do not.  Until 4.0 evaluated meshes had normals before
-    they were cut."""
+    """What Blender 3.4's Cycles draws; 4.2's, 4.5's and 5.0's do not.  Blender cuts by normals that a mesh has already,
+    as evaluated ones had until 4.0."""
     import bpy
 
     return bpy.app.version < (4, 1)
@@ -234,11 +234,16 @@ def _shading(mesh):
     return smooth, normals
 
 
-def normals_of_field(mesh, corner_verts):
-    """float32 [C, 3] of a metaball, or None where they are no numbers: in 3.4 its vertices have those of its field,
-    not of its faces, which differ at creases."""
-    normals = vectors(mesh.vertices, "normal")
-    return normals[corner_verts] if np.isfinite(normals).all() else None
+def take_normals_of_field(mesh, geometry):
+    """In 3.4 a metaball's vertices have the normals of its field, not of its faces, which differ at creases; in 4.2 they
+    do not."""
+    import bpy
+
+    if bpy.app.version >= (4, 2):
+        return
+    normals = vectors(mesh.vertices, "normal")[geometry.corner_verts]
+    if np.isfinite(normals).all():
+        geometry.corner_normals = normals
 
 
 def _drop_broken_faces(geometry, report):

@@ -145,7 +145,7 @@ void LampSet::bend(const LitPoint& point, const LitPlace& place, Ray& ray) {
     const float smooth = glm::dot(point.bsdf.surface_normal(), ray.direction);
     const float flat = glm::dot(place.normal, ray.direction), offset = point.terminator_offset;
     if (smooth <= 0.0f || std::min(smooth, flat) >= offset) return;
-    if (offset == 0.0f && flat < 0.0f) {
+    if (offset == 0.0f) {
         ray.start = place.start_below();
         return;
     }

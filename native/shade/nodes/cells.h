@@ -180,15 +180,16 @@ class CellsAround {
         return cell;
     }
     /// Within its cell.
-    CellPoint<N> unit(const CellPoint<N>& offset) const {
+    CellPoint<N> within(const CellPoint<N>& offset) const {
         return point_in_cell<N>(cell(offset), m_pcg);
     }
-    CellPoint<N> point(const CellPoint<N>& offset) const { return placed(offset, unit(offset)); }
-    Vec3f color(const CellPoint<N>& offset, const CellPoint<N>& unit) const {
-        return color_of_cell<N>(cell(offset), unit, m_pcg);
+    CellPoint<N> point(const CellPoint<N>& offset) const { return placed(offset, within(offset)); }
+    /// `place`: within() of it.
+    Vec3f color(const CellPoint<N>& offset, const CellPoint<N>& place) const {
+        return color_of_cell<N>(cell(offset), place, m_pcg);
     }
 
-    /// `visit(cell, point, unit)` of those `beside` (CellBeside) that may hold a point that is
+    /// `visit(cell, point, within)` of those `beside` (CellBeside) that may hold a point that is
     /// near: `is_near(way)`, with the least way to any of them along each axis.
     template <class IsNear, class Visit>
     void each(const auto& beside, const IsNear& is_near, const Visit& visit) const {
@@ -196,17 +197,17 @@ class CellsAround {
             CellPoint<N> way;
             for (std::size_t c = 0; c < N; ++c) way[c] = m_least[c][cell.column[c]];
             if (!is_near(way)) continue;
-            const CellPoint<N> within = unit(cell.offset);
-            visit(cell, placed(cell.offset, within), within);
+            const CellPoint<N> place = within(cell.offset);
+            visit(cell, placed(cell.offset, place), place);
         }
     }
 
   private:
     static constexpr std::size_t kColumns = 2 * kMostReach + 1;
 
-    CellPoint<N> placed(const CellPoint<N>& offset, const CellPoint<N>& unit) const {
+    CellPoint<N> placed(const CellPoint<N>& offset, const CellPoint<N>& place) const {
         CellPoint<N> point;
-        for (std::size_t c = 0; c < N; ++c) point[c] = offset[c] + unit[c] * m_randomness;
+        for (std::size_t c = 0; c < N; ++c) point[c] = offset[c] + place[c] * m_randomness;
         return point;
     }
 

@@ -103,7 +103,7 @@ class Voronoi {
     struct Near {
         float distance = kFar;
         int index = 0;  ///< of two that are as near the first counts
-        CellPoint<N> offset{}, point{}, unit{};
+        CellPoint<N> offset{}, point{};
 
         bool operator<(const Near& other) const {
             return std::tie(distance, index) < std::tie(other.distance, other.index);
@@ -152,10 +152,10 @@ class Voronoi {
             [&](const CellPoint<N>& way) {
                 return !(least_length_of<kMetric>(way, m_in.exponent) > last.distance);
             },
-            [&](const CellBeside<N>& cell, const CellPoint<N>& point, const CellPoint<N>& unit) {
+            [&](const CellBeside<N>& cell, const CellPoint<N>& point, const auto&) {
                 const CellPoint<N> way = difference(point, cells.inside());
                 const Near here{length_of<kMetric>(way, m_in.exponent), cell.index, cell.offset,
-                                point, unit};
+                                point};
                 if (here < first) {
                     second = first;
                     first = here;
@@ -172,7 +172,8 @@ class Voronoi {
         const auto [first, second] = nearest_of<kMetric>(cells, is_second ? 2 : 1);
         const Near& found = is_second ? second : first;
         VoronoiValue<N> value{found.distance, {}, found.point};
-        if (m_colored) value.color = cells.color(found.offset, found.unit);
+        // No point is found where all are infinitely far: its own cell's then.
+        if (m_colored) value.color = cells.color(found.offset, cells.within(found.offset));
         for (std::size_t c = 0; c < N; ++c) value.position[c] += cells.base()[c];
         return value;
     }
@@ -188,7 +189,7 @@ class Voronoi {
                      value.distance + m_in.smoothness);
         };
         const auto visit = [&](const CellBeside<N>& cell, const CellPoint<N>& point,
-                               const CellPoint<N>& unit) {
+                               const CellPoint<N>& within) {
             const float here = length_of<kMetric>(difference(point, cells.inside()), m_in.exponent);
             const float t =
                 std::clamp(0.5f + 0.5f * (value.distance - here) / m_in.smoothness, 0.0f, 1.0f);
@@ -197,7 +198,7 @@ class Voronoi {
             value.distance += h * (here - value.distance) - less;
             less /= 1.0f + 3.0f * m_in.smoothness;
             if (m_colored && h > 0.0f)
-                value.color += h * (cells.color(cell.offset, unit) - value.color) - less;
+                value.color += h * (cells.color(cell.offset, within) - value.color) - less;
             for (std::size_t c = 0; c < N; ++c)
                 value.position[c] += h * (point[c] - value.position[c]) - less;
         };

@@ -78,8 +78,10 @@ TEST(Voronoi, FindsTheNearestPointsOfAllCellsAround) {
 TEST(Voronoi, HasNoNearestPointWithoutAPower) {
     for (const float exponent : {0.0f, std::nanf("")}) {
         const VoronoiInputs in{1.0f, exponent, 0.0f, 0.0f, 0.5f, 2.0f};
-        const Voronoi<3> voronoi({Metric::Minkowski}, in, false);
-        EXPECT_EQ(voronoi.value({0.3f, 0.6f, 0.1f}).distance, std::numeric_limits<float>::max());
+        const Voronoi<3> voronoi({Metric::Minkowski}, in, true);
+        const VoronoiValue<3> value = voronoi.value({0.3f, 0.6f, 0.1f});
+        EXPECT_EQ(value.distance, std::numeric_limits<float>::max());
+        EXPECT_EQ(value.color, hash_color(CellPoint<3>{}));  // of its own cell
     }
 }
 
