@@ -136,6 +136,7 @@ def mean_and_error(parts):
 
 def save_png(path, linear):
     """8 bits a channel, as a screen shows it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
     write_png(path, (pictures.srgb(linear) * 255 + 0.5).astype(np.uint8))
 
 
