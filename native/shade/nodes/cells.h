@@ -103,7 +103,7 @@ auto with_metric(Metric metric, const Call& call) {
     return call(std::integral_constant<Metric, Euclidean>());
 }
 
-constexpr int kMostReach = 2;
+constexpr int kMostReach = 2;  ///< of the cells around a place
 
 /// A cell near another, as seen from there.
 template <std::size_t N>
