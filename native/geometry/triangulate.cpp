@@ -94,8 +94,6 @@ Vec3d newell_normal(std::span<const Vec3f> polygon) {
 }
 
 QuadTriangles triangulate_quad(std::span<const Vec3f, 4> quad, bool by_normal) {
-    const Vec3d normal =
-        glm::cross(Vec3d(quad[2]) - Vec3d(quad[0]), Vec3d(quad[3]) - Vec3d(quad[1]));
     QuadTriangles triangles;
     for (; triangles.start < 2; ++triangles.start) {
         const auto corner = [&](std::size_t i) {
@@ -105,12 +103,12 @@ QuadTriangles triangulate_quad(std::span<const Vec3f, 4> quad, bool by_normal) {
         const Vec3d first = glm::cross(corner(1) - origin, diagonal);
         const Vec3d second = glm::cross(diagonal, corner(3) - origin);
         const double dot = glm::dot(first, second);
-        const bool turns = by_normal
-                               ? std::min(glm::dot(normal, first), glm::dot(normal, second)) <= 0.0
-                               : dot < 0.0;
+        const double first2 = glm::dot(first, first), second2 = glm::dot(second, second);
+        // The quad's normal is the sum of theirs.
+        const bool turns = by_normal ? dot + std::min(first2, second2) <= 0.0 : dot < 0.0;
         // The second cut is taken as it comes.
         if (turns && triangles.start == 0) continue;
-        const double lengths = std::sqrt(glm::dot(first, first) * glm::dot(second, second));
+        const double lengths = std::sqrt(first2 * second2);
         triangles.cosine = lengths > 0.0 ? dot / lengths : 1.0;
         break;
     }

@@ -14,7 +14,7 @@ from .elements import split_radii
 from .generated import cage_generated, hair_generated, read_generated
 from .hair import read_hair
 from .hair_points import HairPoints
-from .mesh import read_geometry, take_normals_of_field, whole_mesh
+from .mesh import read_geometry, whole_mesh
 from .points import read_point_cloud
 from .subdivision import Cage, cage_mesh, subdivision_record
 from .velocity import read_velocity
@@ -149,9 +149,14 @@ def _read(prototype, example, requested, depsgraph, report, check_cancel):
         velocity = None
     elif prototype.cage is None:
         with whole_mesh(prototype.source, prototype.data) as mesh:
-            found = read_geometry(mesh, prototype.label, requested, report, check_cancel)
-            if found is not None and prototype.source.type == "META":
-                take_normals_of_field(mesh, found[0])
+            found = read_geometry(
+                mesh,
+                prototype.label,
+                requested,
+                report,
+                check_cancel,
+                is_metaball=prototype.source.type == "META",
+            )
             if found is not None and GENERATED in requested:
                 found[0].generated = read_generated(mesh)
             found, velocity = with_velocity(mesh, found)

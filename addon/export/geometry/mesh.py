@@ -84,7 +84,9 @@ def read_points(mesh):
     return vectors(attribute.data) if attribute is not None else vectors(mesh.vertices, "co")
 
 
-def read_geometry(mesh, label, requested, report, check_cancel, subdivision=None):
+def read_geometry(
+    mesh, label, requested, report, check_cancel, subdivision=None, is_metaball=False
+):
     """One geometry with one knot.
 
     Args:
@@ -94,6 +96,7 @@ def read_geometry(mesh, label, requested, report, check_cancel, subdivision=None
         report: called with (datablock, message).
         check_cancel: true when the user has cancelled; asked between the long steps.
         subdivision: record of a cage, or None.
+        is_metaball: the mesh is one's.
 
     Returns:
         (Geometry, Topology of the mesh as Blender has it), or None where there is no face to see.
@@ -126,7 +129,7 @@ def read_geometry(mesh, label, requested, report, check_cancel, subdivision=None
     if subdivision is None:
         geometry.ngon_triangles = _ngon_triangles(mesh, topology)
         geometry.quads_by_normal = _are_quads_cut_by_normal()
-        geometry.smooth, geometry.corner_normals = _shading(mesh)
+        geometry.smooth, geometry.corner_normals = _shading(mesh, topology, is_metaball)
         if geometry.corner_normals is not None and not np.isfinite(geometry.corner_normals).all():
             report(label, "its normals are not finite: computed from the faces instead")
             geometry.corner_normals = None
@@ -206,13 +209,13 @@ def has_flat_faces(mesh):
     return smooth is None or not smooth.all()
 
 
-def _shading(mesh):
+def _shading(mesh, topology, is_metaball):
     """(uint8 [F] or None, float32 [C, 3] or None): smooth flags, and normals where these do not
     say it all; those are for flat faces too.
 
     From Blender 4.1 on custom normals and sharp edges alone split normals in Cycles, though the
     mesh itself splits them between flat faces and smooth ones as well, which 5.2 takes over.  Before,
-    Auto Smooth does.
+    Auto Smooth does, and a metaball's vertices have the normals of its field, which at creases are not those of its faces.
     """
     if hasattr(mesh, "normals_domain"):
         if mesh.normals_domain == "FACE":
@@ -225,6 +228,8 @@ def _shading(mesh):
             return _smooth(mesh), vectors(mesh.corner_normals)
         return _smooth(mesh), None
     smooth = _smooth(mesh)
+    if is_metaball:
+        return smooth, vectors(mesh.vertices, "normal")[topology.corner_verts]
     if not mesh.use_auto_smooth:
         return smooth, None
     # On the evaluated mesh: the layer is the render's own, and is freed at once.
@@ -232,18 +237,6 @@ def _shading(mesh):
     normals = vectors(mesh.loops, "normal")
     mesh.free_normals_split()
     return smooth, normals
-
-
-def take_normals_of_field(mesh, geometry):
-    """In 3.4 a metaball's vertices have the normals of its field, not of its faces, which differ at creases; in 4.2 they
-    do not."""
-    import bpy
-
-    if bpy.app.version >= (4, 2):
-        return
-    normals = vectors(mesh.vertices, "normal")[geometry.corner_verts]
-    if np.isfinite(normals).all():
-        geometry.corner_normals = normals
 
 
 def _drop_broken_faces(geometry, report):

@@ -43,10 +43,8 @@ CellPoint<N> point_in_cell(const CellPoint<N>& k, bool pcg) {
                 hash_floats(k[2], k[3], k[0], k[1]), hash_floats(k[1], k[2], k[3], k[0])};
 }
 
-/// `point`: point_in_cell() of it.
 template <std::size_t N>
-Vec3f color_of_cell(const CellPoint<N>& k, const CellPoint<N>& point, bool pcg) {
-    if constexpr (N == 3) return {point[0], point[1], point[2]};  // made of the same hashes
+Vec3f color_of_cell(const CellPoint<N>& k, bool pcg) {
     if (N == 1 || !pcg) return hash_color(k);
     std::array<std::int32_t, (N < 4 ? 3 : 4)> cell{};
     std::ranges::copy(indices<N>(k), cell.begin());
@@ -184,9 +182,11 @@ class CellsAround {
         return point_in_cell<N>(cell(offset), m_pcg);
     }
     CellPoint<N> point(const CellPoint<N>& offset) const { return placed(offset, within(offset)); }
-    /// `place`: within() of it.
-    Vec3f color(const CellPoint<N>& offset, const CellPoint<N>& place) const {
-        return color_of_cell<N>(cell(offset), place, m_pcg);
+    Vec3f color(const CellPoint<N>& offset) const { return color_of_cell<N>(cell(offset), m_pcg); }
+    /// The same where within() of it is at hand, which is made of the same hashes in 3D.
+    Vec3f color(const CellPoint<N>& offset, const CellPoint<N>& within) const {
+        if constexpr (N == 3) return {within[0], within[1], within[2]};
+        return color(offset);
     }
 
     /// `visit(cell, point, within)` of those `beside` (CellBeside) that may hold a point that is

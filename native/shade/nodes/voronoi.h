@@ -172,8 +172,7 @@ class Voronoi {
         const auto [first, second] = nearest_of<kMetric>(cells, is_second ? 2 : 1);
         const Near& found = is_second ? second : first;
         VoronoiValue<N> value{found.distance, {}, found.point};
-        // No point is found where all are infinitely far: its own cell's then.
-        if (m_colored) value.color = cells.color(found.offset, cells.within(found.offset));
+        if (m_colored) value.color = cells.color(found.offset);
         for (std::size_t c = 0; c < N; ++c) value.position[c] += cells.base()[c];
         return value;
     }
