@@ -359,9 +359,9 @@ def test_what_nothing_touched_is_not_read_again(anew, monkeypatch):
     read = []
     mesh = geometry_source.read_geometry
 
-    def counted(data, label, *rest):
+    def counted(data, label, *rest, **named):
         read.append(label)
-        return mesh(data, label, *rest)
+        return mesh(data, label, *rest, **named)
 
     monkeypatch.setattr(geometry_source, "read_geometry", counted)
 
