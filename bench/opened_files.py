@@ -80,6 +80,20 @@ def bounds(scene):
     return values.min(0), values.max(0)
 
 
+def add(scene, name, data):
+    """Without operators, which files in other modes refuse."""
+    added = bpy.data.objects.new(name, data)
+    scene.collection.objects.link(added)
+    return added
+
+
+def square(size):
+    h = size / 2
+    mesh = bpy.data.meshes.new("Square")
+    mesh.from_pydata([(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [], [(0, 1, 2, 3)])
+    return mesh
+
+
 def complete(scene):
     low, high = bounds(scene)
     size, middle = float(np.linalg.norm(high - low)), (low + high) / 2
@@ -88,14 +102,14 @@ def complete(scene):
     shines = any(item.type == "LIGHT" for item in scene.objects)
     if scene.camera is not None:
         return
-    bpy.ops.mesh.primitive_plane_add(
-        size=20 * size, location=(middle[0], middle[1], low[2] - 1e-4 * size)
-    )
-    bpy.context.object.data.materials.append(material("Floor", Roughness=0.8))
+    floor = add(scene, "Floor", square(20 * size))
+    floor.location = middle[0], middle[1], low[2] - 1e-4 * size
+    floor.data.materials.append(material("Floor", Roughness=0.8))
     engines.add_camera(scene, middle + np.array((0.9, -1.5, 0.6)) * size * 0.8, middle)
     if not shines:
-        bpy.ops.object.light_add(type="SUN", rotation=(0.7, 0.3, 0.5))
-        bpy.context.object.data.energy, bpy.context.object.data.angle = 2.0, 0.05
+        sun = add(scene, "Sun", bpy.data.lights.new("Sun", "SUN"))
+        sun.rotation_euler = 0.7, 0.3, 0.5
+        sun.data.energy, sun.data.angle = 2.0, 0.05
 
 
 def build(path):
