@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 import pytest
 import scene_parts
+from bounced_parts import render_bounced
 from node_comparison import Tree, render_both, socket
 
 OUTPUTS = [
@@ -44,16 +45,16 @@ def world_by(scene, name):
     links.new(mix.outputs[0], background.inputs["Color"])
 
 
-def strips(scene):
-    """Side by side: diffuse, a mirror and the world itself."""
-    for i, kind in enumerate(("ShaderNodeBsdfDiffuse", "ShaderNodeBsdfGlossy")):
+def strips(scene, kinds):
+    """Side by side, of ("Kind", roughness) or the world itself, three at most."""
+    for i, (kind, roughness) in enumerate(kinds):
         thing = scene_parts.add_square(scene, kind, 1.0, (i - 1.0, 0.0, 0.0))
         tree = Tree(thing)
-        kind = kind if hasattr(bpy.types, kind) else "ShaderNodeBsdfAnisotropic"
-        shader = tree.add(kind)
+        kind = f"ShaderNodeBsdf{kind}"
+        shader = tree.add(kind if hasattr(bpy.types, kind) else "ShaderNodeBsdfAnisotropic")
         shader.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
         if "Roughness" in shader.inputs:
-            shader.inputs["Roughness"].default_value = 0.0
+            shader.inputs["Roughness"].default_value = roughness
         tree.link(shader.outputs[0], tree.output.inputs["Surface"])
     scene_parts.add_camera(scene, ortho_scale=3.0)
     scene.render.resolution_x, scene.render.resolution_y = 12, 4
@@ -61,11 +62,21 @@ def strips(scene):
 
 @pytest.mark.parametrize("name", OUTPUTS)
 def test_the_world_knows_who_asks(scene, render, name):
-    strips(scene)
+    strips(scene, [("Diffuse", 0.0), ("Glossy", 0.0)])
     world_by(scene, name)
     theirs, ours = render_both(scene, render)
     # One colour each but for rounding: Cycles packs normals and keeps lights in single precision.
     assert np.abs(theirs - ours).max() < 1e-3
+
+
+@pytest.mark.parametrize("name", OUTPUTS)
+def test_the_world_knows_who_asks_through_a_surface(scene, render, name):
+    """What is refracted counts as glossy, too, but for its depth."""
+    strips(scene, [("Refraction", 0.0), ("Refraction", 0.3), ("Translucent", 0.0)])
+    world_by(scene, name)
+    theirs, ours = render_bounced(scene, render, 64, limit=1)
+    # Of rough refraction some samples end at facets.
+    assert np.abs(theirs - ours).mean(axis=0).max() < 0.02
 
 
 def shadow_scene(scene, build):

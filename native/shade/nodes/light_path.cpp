@@ -44,7 +44,8 @@ bool is_counted(RayType ray) {
 float light_path_value(const std::string& output, RayType ray) {
     const bool reflected =
         ray == RayType::Diffuse || ray == RayType::Glossy || ray == RayType::Singular;
-    const bool glossy = reflected && ray != RayType::Diffuse;
+    // Through a surface, too; what is counted as glossy is reflected alone (Cycles).
+    const bool glossy = (reflected || goes_through(ray)) && !is_diffuse(ray);
     const auto is = [&output](const char* name) { return output == name; };
     const bool yes =
         (is("Is Camera Ray") && ray == RayType::Camera) ||
@@ -55,7 +56,7 @@ float light_path_value(const std::string& output, RayType ray) {
         (is("Is Reflection Ray") && reflected) || (is("Ray Depth") && ray != RayType::Camera) ||
         (is("Is Diffuse Ray") && is_diffuse(ray)) ||
         (is("Diffuse Depth") && ray == RayType::Diffuse) ||
-        ((is("Is Glossy Ray") || is("Glossy Depth")) && glossy);
+        (is("Is Glossy Ray") && glossy) || (is("Glossy Depth") && glossy && reflected);
     return yes ? 1.0f : 0.0f;
 }
 
