@@ -56,6 +56,48 @@ def test_a_bump_along_x_does_not_lean_along_y(scene, render):
     assert np.abs(seen + slope / np.hypot(1, slope))[2:-2].max() < 0.2 * slope.max()
 
 
+def grid_in_a_box(tree):
+    image = bpy.data.images.new("Grid", 64, 64)
+    image.generated_type = "COLOR_GRID"
+    texture = tree.add("ShaderNodeTexImage", image=image, projection="BOX", projection_blend=0.2)
+    tree.link(tree.add("ShaderNodeTexCoord").outputs["Object"], texture.inputs["Vector"])
+    return texture.outputs["Color"]
+
+
+READERS = {
+    "Geometry's Normal": lambda tree: tree.add("ShaderNodeNewGeometry").outputs["Normal"],
+    "Geometry's Tangent": lambda tree: tree.add("ShaderNodeNewGeometry").outputs["Tangent"],
+    "True Normal": lambda tree: tree.add("ShaderNodeNewGeometry").outputs["True Normal"],
+    "Normal": lambda tree: tree.add("ShaderNodeTexCoord").outputs["Normal"],
+    "Reflection": lambda tree: tree.add("ShaderNodeTexCoord").outputs["Reflection"],
+    "Tangent": lambda tree: tree.add("ShaderNodeTangent", axis="Y").outputs[0],
+    "Tangent of UVs": lambda tree: (
+        tree.add("ShaderNodeTangent", direction_type="UV_MAP").outputs[0]
+    ),
+    "box of images": grid_in_a_box,
+}
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_who_reads_the_normal_of_a_material_that_displaces_by_a_bump(scene, render, reader):
+    """All but True Normal read the bumped one in Cycles.  Slow waves: both see them alike."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, rotation=(0.5, 0.2, 0.4))
+    ball = bpy.context.object
+    bpy.ops.object.shade_smooth()
+    tree = Tree(ball)
+    noise = tree.add("ShaderNodeTexNoise")
+    noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = 2.0, 0.0
+    displacement = tree.add("ShaderNodeDisplacement")
+    displacement.inputs["Scale"].default_value = 0.5
+    tree.link(noise.outputs[0], displacement.inputs["Height"])
+    tree.link(displacement.outputs[0], tree.output.inputs["Displacement"])
+    show_normal(tree, READERS[reader](tree))
+    scene_parts.add_camera(scene, ortho_scale=2.2)
+    scene.render.resolution_x = scene.render.resolution_y = 128
+    theirs, ours = render_both(scene, render, samples=16)
+    assert rmse(theirs, ours) < 0.01
+
+
 def world_of_directions(scene):
     """Its colour is the direction, halved and lifted to [0, 1]."""
     scene.world = bpy.data.worlds.new("World")

@@ -91,9 +91,17 @@ VectorSource object_normal(NodeBuilder& b) {
     // A world faces who looks at it.
     if (b.is_world())
         return b.map<Vec3f>([](const Vec3f& d) { return -d; }, position_at(b, Shift::None));
-    return b.geometry<Vec3f>([](const ShadingInput& in, std::size_t i) {
-        return in.axes_at(i).object_normal_of(in.points->normal[i]);
-    });
+    // That which bumps of the material make.
+    const VectorSource normal = b.shading_normal(), out = b.new_source<Vec3f>();
+    b.add_step(
+        [=](Run& run) {
+            const auto n = run.read(normal);
+            Vec3f* result = run.write(out);
+            for (std::size_t i = 0; i < run.count(); ++i)
+                result[i] = run.input().axes_at(i).object_normal_of(n[i]);
+        },
+        {normal.slot}, {out.slot});
+    return out;
 }
 
 VectorSource generated_at(NodeBuilder& b, Shift shift) {

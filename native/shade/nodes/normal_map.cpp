@@ -114,29 +114,27 @@ VectorSource uv_tangent(NodeBuilder& b, const std::string& name) {
     const VectorSource of_corners =
         b.attribute_at({AttributeSource::Tangent, name, 4}, Shift::None);
     const VectorSource uv = uv_at(b, name, Shift::None), uv_u = uv_beside(b, name, Shift::U),
-                       uv_v = uv_beside(b, name, Shift::V), out = b.new_source<Vec3f>();
+                       uv_v = uv_beside(b, name, Shift::V), shown = b.shading_normal(),
+                       out = b.new_source<Vec3f>();
     b.add_step(
         [=](Run& run) {
             const auto uvs = run.read(uv), us = run.read(uv_u), vs = run.read(uv_v),
-                       tangents = run.read(of_corners);
+                       tangents = run.read(of_corners), normals = run.read(shown);
             const ShadingPoints& points = *run.input().points;
             Vec3f* result = run.write(out);
             for (std::size_t i = 0; i < run.count(); ++i) {
-                if (tangents[i] != Vec3f(0.0f)) {
-                    const Vec3f& normal = points.normal[i];
-                    const Vec3f along =
-                        run.input().axes_at(i).world_normal_from_object() * tangents[i];
-                    result[i] = normalize_or(along - normal * glm::dot(normal, along), Vec3f(0.0f));
-                    continue;
+                Vec3f along = run.input().axes_at(i).world_normal_from_object() * tangents[i];
+                if (tangents[i] == Vec3f(0.0f)) {
+                    const TangentFrame frame =
+                        tangent_frame(points.normal[i], points.dp_du[i], points.dp_dv[i],
+                                      Vec2f(us[i] - uvs[i]), Vec2f(vs[i] - uvs[i]));
+                    along = frame.valid ? frame.tangent : points.dp_du[i];
                 }
-                const TangentFrame frame =
-                    tangent_frame(points.normal[i], points.dp_du[i], points.dp_dv[i],
-                                  Vec2f(us[i] - uvs[i]), Vec2f(vs[i] - uvs[i]));
-                result[i] =
-                    frame.valid ? frame.tangent : normalize_or(points.dp_du[i], Vec3f(0.0f));
+                const Vec3f normal = normals[i];
+                result[i] = normalize_or(along - normal * glm::dot(normal, along), Vec3f(0.0f));
             }
         },
-        {of_corners.slot, uv.slot, uv_u.slot, uv_v.slot}, {out.slot});
+        {of_corners.slot, uv.slot, uv_u.slot, uv_v.slot, shown.slot}, {out.slot});
     return out;
 }
 

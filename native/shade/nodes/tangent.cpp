@@ -24,20 +24,21 @@ Vec3f around(RadialAxis axis, const Vec3f& generated) {
 }  // namespace
 
 VectorSource radial_tangent(NodeBuilder& b, RadialAxis axis) {
-    const VectorSource generated = generated_at(b, b.shift()), out = b.new_source<Vec3f>();
+    const VectorSource generated = generated_at(b, b.shift()), normal = b.shading_normal();
+    const VectorSource out = b.new_source<Vec3f>();
     b.add_step(
         [=](Run& run) {
-            const auto places = run.read(generated);
+            const auto places = run.read(generated), normals = run.read(normal);
             // As Cycles does, though it is a direction: by the matrix of normals.
             Vec3f* result = run.write(out);
             for (std::size_t i = 0; i < run.count(); ++i) {
-                const Vec3f& n = run.input().points->normal[i];
+                const Vec3f n = normals[i];
                 const Vec3f way = unit(run.input().axes_at(i).world_normal_from_object() *
                                        around(axis, places[i]));
                 result[i] = glm::cross(n, unit(glm::cross(way, n)));
             }
         },
-        {generated.slot}, {out.slot});
+        {generated.slot, normal.slot}, {out.slot});
     return out;
 }
 
