@@ -44,13 +44,10 @@ def material_record(material, images, report, aovs=()):
     owner = f"material '{material.name_full}'"
     read = inlined(material)
     graph = FlatGraph(read.node_tree, owner, images, report)
-    output = read.node_tree.get_output_node("CYCLES")
-    surface = None
-    if output is not None:
-        surface = graph.add(output.inputs["Surface"])
-        record["displacement"] = graph.add(output.inputs["Displacement"])
-        record["displacement_method"] = displacement_method(material)
-        record["volume"] = graph.add(output.inputs["Volume"])
+    surface = graph.add_output("Surface")
+    record["displacement"] = graph.add_output("Displacement")
+    record["displacement_method"] = displacement_method(material)
+    record["volume"] = graph.add_output("Volume")
     graph.add_aov_outputs(aovs)
     record["holdout"] = surface is not None and _cuts(graph.nodes, surface[0])
     if not record["holdout"] and any(node["type"] == _HOLDOUT for node in graph.nodes):

@@ -6,6 +6,7 @@ import bpy
 
 from .node_links import Scope, trace
 from .node_properties import node_properties
+from .output_nodes import output_nodes
 
 # Sockets that Blender 4 renamed: {bl_idname: {old identifier: new}}.
 _PRINCIPLED = {
@@ -28,6 +29,7 @@ class FlatGraph:
 
     def __init__(self, tree, owner, images, report):
         self._root = Scope(tree)
+        self._outputs = None  # of output_nodes
         self._owner = owner
         self._images = images
         self._report = report
@@ -43,7 +45,20 @@ class FlatGraph:
         Returns:
             (node index, output identifier), or None where nothing is linked.
         """
-        source = trace(self._root, socket)
+        return self._add(self._root, socket)
+
+    def add_output(self, name):
+        """Adds all that feeds a socket of a material's or world's output; returns as `add` does."""
+        if self._outputs is None:
+            self._outputs = output_nodes(self._root)
+        for scope, output in self._outputs:
+            socket = output.inputs.get(name)
+            if socket is not None and scope.link(socket) is not None:
+                return self._add(scope, socket)
+        return None
+
+    def _add(self, scope, socket):
+        source = trace(scope, socket)
         if source.node is not None:
             self._add_nodes(source)
         self._report_left_out()

@@ -56,10 +56,8 @@ def export_world(scene, view_layer, report, images=None):
     shown = {}
     read = inlined(world)
     graph = FlatGraph(read.node_tree, owner, shown, report)
-    output = read.node_tree.get_output_node("CYCLES")
-    if output is not None:
-        record["surface"] = graph.add(output.inputs["Surface"])
-        record["volume"] = graph.add(output.inputs["Volume"])
+    record["surface"] = graph.add_output("Surface")
+    record["volume"] = graph.add_output("Volume")
     if images is not None:
         known = {image["name"] for image in images}
         images.extend(image for image in shown.values() if image["name"] not in known)
