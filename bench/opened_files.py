@@ -12,8 +12,10 @@ import numpy as np
 from mathutils import Vector
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "tests" / "images"))
+for folder in ("blender", "images"):
+    sys.path.insert(0, str(HERE.parent / "tests" / folder))
 import engines  # noqa: E402
+import scene_parts  # noqa: E402
 
 if "bool" not in vars(np):
     np.bool = bool  # the glTF importer of Blender 3.4 asks for it
@@ -80,21 +82,8 @@ def bounds(scene):
     return values.min(0), values.max(0)
 
 
-def add(scene, name, data):
-    """Without operators, which files in other modes refuse."""
-    added = bpy.data.objects.new(name, data)
-    scene.collection.objects.link(added)
-    return added
-
-
-def square(size):
-    h = size / 2
-    mesh = bpy.data.meshes.new("Square")
-    mesh.from_pydata([(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [], [(0, 1, 2, 3)])
-    return mesh
-
-
 def complete(scene):
+    """Without operators, which files in other modes refuse."""
     low, high = bounds(scene)
     size, middle = float(np.linalg.norm(high - low)), (low + high) / 2
     if scene.world is None:
@@ -102,12 +91,11 @@ def complete(scene):
     shines = any(item.type == "LIGHT" for item in scene.objects)
     if scene.camera is not None:
         return
-    floor = add(scene, "Floor", square(20 * size))
-    floor.location = middle[0], middle[1], low[2] - 1e-4 * size
-    floor.data.materials.append(material("Floor", Roughness=0.8))
+    place = (middle[0], middle[1], low[2] - 1e-4 * size)
+    scene_parts.add_square(scene, "Floor", 20 * size, place, material("Floor", Roughness=0.8))
     engines.add_camera(scene, middle + np.array((0.9, -1.5, 0.6)) * size * 0.8, middle)
     if not shines:
-        sun = add(scene, "Sun", bpy.data.lights.new("Sun", "SUN"))
+        sun = scene_parts.add_object(scene, "Sun", bpy.data.lights.new("Sun", "SUN"))
         sun.rotation_euler = 0.7, 0.3, 0.5
         sun.data.energy, sun.data.angle = 2.0, 0.05
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes of Blender 5 that say how a tree is made: zones that repeat, closures, bundles, menus, switches.  Blender
-itself makes the tree that is meant, as it does for Cycles."""
+"""Nodes of Blender 5 that say how a tree is made: zones that repeat, closures, bundles, menus, switches; and outputs in
+groups, one of which is taken.  Blender itself makes the tree that is meant, as it does for Cycles."""
 
 import bpy
 
@@ -30,13 +30,23 @@ def inlined(datablock):
         The datablock itself where its tree, and groups in it, hold nodes that are shaded alone.
     """
     kinds = getattr(bpy.types, "InlineShaderNodes", None)
-    if kinds is None or not any_node_of([datablock.node_tree], _is_maker):
+    if kinds is None:
+        return datablock
+    groups = [node.node_tree for node in datablock.node_tree.nodes if node.type == "GROUP"]
+    if not (
+        any_node_of([datablock.node_tree], _is_maker)
+        or any_node_of([tree for tree in groups if tree is not None], _is_output)
+    ):
         return datablock
     if isinstance(datablock, bpy.types.Material):
         return kinds.from_material(datablock)
     return (kinds.from_world if isinstance(datablock, bpy.types.World) else kinds.from_light)(
         datablock
     )
+
+
+def _is_output(node):
+    return node.type in {"OUTPUT_LIGHT", "OUTPUT_MATERIAL", "OUTPUT_WORLD"}
 
 
 def _is_maker(node):

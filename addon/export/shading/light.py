@@ -13,6 +13,7 @@ from .constant_nodes import as_number, constant
 from .inlined_tree import inlined
 from .node_links import Scope, trace
 from .nodes import FlatGraph
+from .output_nodes import fed_socket, output_nodes
 
 _AREA_SHAPES = {"SQUARE", "RECTANGLE", "DISK", "ELLIPSE"}
 
@@ -139,28 +140,25 @@ def _with_nodes(light):
     return inlined(light) if light.use_nodes and light.node_tree is not None else None
 
 
-def _surface(tree):
-    """The socket Surface of the light's output, if something is linked to it."""
-    outputs = [node for node in tree.nodes if node.type == "OUTPUT_LIGHT"]
-    output = next((node for node in outputs if node.is_active_output), None)
-    surface = output.inputs["Surface"] if output else None
-    return surface if surface is not None and surface.is_linked else None
-
-
 def _graph(read, label, images, report):
     """{"nodes": ..., "surface": ...} of a light whose nodes vary, else None."""
-    if read is None or (linked := _surface(read.node_tree)) is None:
-        return None
-    source = trace(Scope(read.node_tree), linked)
-    if source.node is None:  # _emission() says why
+    source = None if read is None else _surface(Scope(read.node_tree))
+    if source is None:  # _emission() says why
         return None
     if _is_plain_emission(source):
         inputs = [source.node.inputs[name] for name in ("Color", "Strength")]
         if all(constant(read.node_tree, i)[0] is not None for i in inputs):
             return None
     graph = FlatGraph(read.node_tree, label, images, report)
-    surface = graph.add(linked)
+    surface = graph.add_output("Surface")
     return {"nodes": graph.nodes, "surface": surface}
+
+
+def _surface(scope):
+    """Source of the surface, or None: nothing is linked, or it is muted or left out."""
+    fed = fed_socket(output_nodes(scope), "Surface")
+    source = None if fed is None else trace(*fed)
+    return None if source is None or source.node is None else source
 
 
 def _is_plain_emission(source):
@@ -172,14 +170,11 @@ def _emission(read, label, report):
     """Colour and strength of the light's Emission node; white and 1 without nodes."""
     if read is None:
         return [1.0] * 3, 1.0
-    surface = _surface(read.node_tree)
-    if surface is None:
-        return [1.0] * 3, 0.0
     scope = Scope(read.node_tree)
-    source = trace(scope, surface)
+    source = _surface(scope)
     for said in scope.left_out.values():
         report(label, said)
-    if source.node is None:  # muted, or left out
+    if source is None:
         return [1.0] * 3, 0.0
     node = source.node
     if not _is_plain_emission(source):

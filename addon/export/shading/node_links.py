@@ -55,6 +55,12 @@ class Scope:
             self._children[group_node.name] = Scope(group_node.node_tree, group_node, self)
         return self._children[group_node.name]
 
+    def groups(self):
+        """The scopes of the groups in this tree that are not muted, one after the other."""
+        for node in self.tree.nodes:
+            if node.type == "GROUP" and not node.mute and node.node_tree is not None:
+                yield self.inside(node)
+
 
 class Source:
     """Where a value comes from: a node's output, or a socket's own constant (`node` None).
@@ -79,6 +85,18 @@ class Source:
     def has_value(self):
         """Of a constant: whether it is what its socket holds, as what groups hide is."""
         return bool(self.through) or _has_constant(self.socket)
+
+
+def is_connected(scope, socket):
+    """Whether Cycles connects an input socket at all, be it to nothing: not to nodes that it does not have, nor to
+    muted ones that hand nothing on."""
+    link = scope.link(socket)
+    if link is None:
+        return False
+    node = link.from_node
+    if node.mute and node.type != "REROUTE":
+        return any(inner.to_socket == link.from_socket for inner in node.internal_links)
+    return _left_out(node) is None
 
 
 def trace(scope, socket):

@@ -6,7 +6,7 @@ import bpy
 
 from .node_links import Scope, trace
 from .node_properties import node_properties
-from .output_nodes import output_nodes
+from .output_nodes import fed_socket, output_nodes
 
 # Sockets that Blender 4 renamed: {bl_idname: {old identifier: new}}.
 _PRINCIPLED = {
@@ -36,29 +36,21 @@ class FlatGraph:
         self._index = {}
         self.nodes = []
 
-    def add(self, socket):
-        """Adds all that feeds an input socket of the tree itself.
+    def add_output(self, name):
+        """Adds all that feeds a socket of the output node.
 
         Args:
-            socket: input of an output node.
+            name: "Surface", "Displacement" or "Volume".
 
         Returns:
             (node index, output identifier), or None where nothing is linked.
         """
-        return self._add(self._root, socket)
-
-    def add_output(self, name):
-        """Adds all that feeds a socket of a material's or world's output; returns as `add` does."""
         if self._outputs is None:
             self._outputs = output_nodes(self._root)
-        for scope, output in self._outputs:
-            socket = output.inputs.get(name)
-            if socket is not None and scope.link(socket) is not None:
-                return self._add(scope, socket)
-        return None
-
-    def _add(self, scope, socket):
-        source = trace(scope, socket)
+        fed = fed_socket(self._outputs, name)
+        if fed is None:
+            return None
+        source = trace(*fed)
         if source.node is not None:
             self._add_nodes(source)
         self._report_left_out()
@@ -71,12 +63,10 @@ class FlatGraph:
         scopes = [self._root] if names else []
         while scopes:
             scope = scopes.pop()
+            scopes.extend(scope.groups())
             for node in scope.tree.nodes:
-                if node.mute:
-                    continue
-                if node.type == "GROUP" and node.node_tree is not None:
-                    scopes.append(scope.inside(node))
-                elif node.bl_idname == "ShaderNodeOutputAOV" and aov_name(node) in names:
+                is_asked = node.bl_idname == "ShaderNodeOutputAOV" and not node.mute
+                if is_asked and aov_name(node) in names:
                     self._add_aov_output(scope, node)
         self._report_left_out()
 

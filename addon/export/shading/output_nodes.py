@@ -1,29 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which Material Output or World Output Cycles takes, where groups hold some, too."""
+"""Which output node Cycles takes of a material, world or light, where groups hold some, too."""
 
 import bpy
 
+from .node_links import is_connected
+
 
 def output_nodes(root):
-    """[(Scope, output node)]: each socket is fed by the first in which it is linked.
+    """[(Scope, output node)], those that come first connected first.
 
-    Cycles connects groups before what holds them, and leaves alone what is connected.  From Blender 5.0 on groups are
-    looked into only where the tree itself has no output.
+    Cycles connects groups before what holds them, and leaves alone what is connected.  From Blender 5.0 on trees whose
+    groups hold outputs are made into one by Blender (inlined_tree.py), which has one.
 
     Args:
-        root: Scope of a material's or world's tree.
+        root: Scope of the datablock's tree.
     """
-    own = root.tree.get_output_node("CYCLES")
-    if own is not None and bpy.app.version >= (5, 0, 0):
-        return [(root, own)]
-    found, entered, open_ = [], {root.tree.as_pointer()}, [(root, iter(root.tree.nodes))]
+    if bpy.app.version >= (5, 0, 0):
+        own = root.tree.get_output_node("CYCLES")
+        return [] if own is None else [(root, own)]
+    found, entered, open_ = [], set(), [(root, root.groups())]
     while open_:
-        scope, nodes = open_[-1]
-        group = next((node for node in nodes if _is_new_group(node, entered)), None)
-        if group is not None:
-            entered.add(group.node_tree.as_pointer())
-            inner = scope.inside(group)
-            open_.append((inner, iter(inner.tree.nodes)))
+        scope, groups = open_[-1]
+        # Where a tree is used again its outputs come too late.
+        inner = next((group for group in groups if group.tree.as_pointer() not in entered), None)
+        if inner is not None:
+            entered.add(inner.tree.as_pointer())
+            open_.append((inner, inner.groups()))
             continue
         open_.pop()
         output = scope.tree.get_output_node("CYCLES")
@@ -32,8 +34,20 @@ def output_nodes(root):
     return found
 
 
-def _is_new_group(node, entered):
-    """A tree that was entered before has nothing to add."""
-    if node.type != "GROUP" or node.mute or node.node_tree is None:
-        return False
-    return node.node_tree.as_pointer() not in entered
+def fed_socket(outputs, name):
+    """(Scope, input socket) of the first output in which Cycles connects it, else of the last that has it; None where
+    none does.
+
+    Args:
+        outputs: of `output_nodes`.
+        name: of the socket.
+    """
+    last = None
+    for scope, output in outputs:
+        socket = output.inputs.get(name)
+        if socket is None:
+            continue
+        last = scope, socket
+        if is_connected(scope, socket):
+            break
+    return last

@@ -91,7 +91,7 @@ VectorSource object_normal(NodeBuilder& b) {
     // A world faces who looks at it.
     if (b.is_world())
         return b.map<Vec3f>([](const Vec3f& d) { return -d; }, position_at(b, Shift::None));
-    // That which bumps of the material make.
+    // Bent where the material displaces by a bump, as in Cycles; Bump nodes do not count.
     const VectorSource normal = b.shading_normal(), out = b.new_source<Vec3f>();
     b.add_step(
         [=](Run& run) {

@@ -15,8 +15,8 @@ VectorSource generated_at(NodeBuilder& b, Shift shift);
 VectorSource uv_at(NodeBuilder& b, const std::string& name, Shift shift);
 /// NodeBuilder::attribute_beside of it.
 VectorSource uv_beside(NodeBuilder& b, const std::string& name, Shift shift);
-/// Unit, along growing u of a map on the surface as modelled; its first derivative where it has
-/// none.
+/// Unit, along growing u of a map, or the first derivative where it has none, square to the shading
+/// normal; 0 where nothing is left of it.
 VectorSource uv_tangent(NodeBuilder& b, const std::string& name);
 /// The shading normal in object space, unit.
 VectorSource object_normal(NodeBuilder& b);

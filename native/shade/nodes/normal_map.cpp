@@ -109,7 +109,6 @@ void build_tangent_space(NodeBuilder& b, const VectorSource& color, const FloatS
 
 }  // namespace
 
-/// As a Normal Map's, but along the surface that is shaded.
 VectorSource uv_tangent(NodeBuilder& b, const std::string& name) {
     const VectorSource of_corners =
         b.attribute_at({AttributeSource::Tangent, name, 4}, Shift::None);
