@@ -55,8 +55,8 @@ float light_path_value(const std::string& output, RayType ray) {
         ((is("Is Transmission Ray") || is("Transmission Depth")) && goes_through(ray)) ||
         (is("Is Reflection Ray") && reflected) || (is("Ray Depth") && ray != RayType::Camera) ||
         (is("Is Diffuse Ray") && is_diffuse(ray)) ||
-        (is("Diffuse Depth") && ray == RayType::Diffuse) ||
-        (is("Is Glossy Ray") && glossy) || (is("Glossy Depth") && glossy && reflected);
+        (is("Diffuse Depth") && ray == RayType::Diffuse) || (is("Is Glossy Ray") && glossy) ||
+        (is("Glossy Depth") && glossy && reflected);
     return yes ? 1.0f : 0.0f;
 }
 
