@@ -32,11 +32,9 @@ def inlined(datablock):
     kinds = getattr(bpy.types, "InlineShaderNodes", None)
     if kinds is None:
         return datablock
-    groups = [node.node_tree for node in datablock.node_tree.nodes if node.type == "GROUP"]
-    if not (
-        any_node_of([datablock.node_tree], _is_maker)
-        or any_node_of([tree for tree in groups if tree is not None], _is_output)
-    ):
+    tree = datablock.node_tree
+    groups = [n.node_tree for n in tree.nodes if n.type == "GROUP" and n.node_tree is not None]
+    if not (any_node_of([tree], _is_maker) or any_node_of(groups, _is_output)):
         return datablock
     if isinstance(datablock, bpy.types.Material):
         return kinds.from_material(datablock)

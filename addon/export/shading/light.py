@@ -157,8 +157,8 @@ def _graph(read, label, images, report):
 def _surface(scope):
     """Source of the surface, or None: nothing is linked, or it is muted or left out."""
     fed = fed_socket(output_nodes(scope), "Surface")
-    source = None if fed is None else trace(*fed)
-    return None if source is None or source.node is None else source
+    source = trace(*fed) if fed else None
+    return source if source and source.node else None
 
 
 def _is_plain_emission(source):

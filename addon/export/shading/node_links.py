@@ -94,8 +94,8 @@ def is_connected(scope, socket):
     if link is None:
         return False
     node = link.from_node
-    if node.mute and node.type != "REROUTE":
-        return any(inner.to_socket == link.from_socket for inner in node.internal_links)
+    if _is_muted(node):
+        return _inner_socket(node, link.from_socket) is not None
     return _left_out(node) is None
 
 
@@ -133,14 +133,14 @@ def trace(scope, socket):
             # Groups may hide what their sockets hold, which it is all the same.
             return Source(scope, None, socket, _types(passed))
         node, output = link.from_node, link.from_socket
-        muted = node.mute and node.type != "REROUTE"
+        muted = _is_muted(node)
         if node.type == "REROUTE":
             socket = node.inputs[0]
         elif muted:
-            inner = next((x for x in node.internal_links if x.to_socket == output), None)
+            inner = _inner_socket(node, output)
             if inner is None:
                 return own
-            socket = inner.from_socket
+            socket = inner
         elif node.type == "GROUP":
             result = _group_result(node, output)
             if result is None:
@@ -156,6 +156,17 @@ def trace(scope, socket):
         else:
             return Source(scope, node, output, _types(passed))
         passed.append(socket)
+
+
+def _is_muted(node):
+    """Reroutes do the same, muted or not."""
+    return node.mute and node.type != "REROUTE"
+
+
+def _inner_socket(node, output):
+    """The input that a muted node hands on to an output, or None."""
+    links = node.internal_links
+    return next((link.from_socket for link in links if link.to_socket == output), None)
 
 
 def _left_out(node):

@@ -29,7 +29,7 @@ class FlatGraph:
 
     def __init__(self, tree, owner, images, report):
         self._root = Scope(tree)
-        self._outputs = None  # of output_nodes
+        self._outputs = output_nodes(self._root)
         self._owner = owner
         self._images = images
         self._report = report
@@ -45,8 +45,6 @@ class FlatGraph:
         Returns:
             (node index, output identifier), or None where nothing is linked.
         """
-        if self._outputs is None:
-            self._outputs = output_nodes(self._root)
         fed = fed_socket(self._outputs, name)
         if fed is None:
             return None
